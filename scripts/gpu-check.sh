@@ -86,6 +86,7 @@ if [ -n "$pack" ]; then
     cp build/cuda-pack/lab/rival_nanovdb_trace $content
     programs+=($content/rival_nanovdb_trace)
   fi
+  cp -r lab/report $content
   strip "${programs[@]}"
   ! ldd "${programs[@]}" | grep "not found" || die "libraries are missing"
   # Copies all libraries except the C library, which must match the loader of the other machine.

@@ -10,8 +10,8 @@
 #include "lab/attributes/color_pictures.hpp"
 #include "lab/attributes/dolonius.hpp"
 #include "lab/attributes/esvo_blocks.hpp"
-#include "lab/build/bench_mesh.hpp"
-#include "lab/report/scratch_folder.hpp"
+#include "lab/runs/scene_mesh.hpp"
+#include "lab/runs/scratch_folder.hpp"
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/dag/stop_watch.hpp"
@@ -151,7 +151,7 @@ class Bench {
 
  private:
   void measure(const std::string& scene) {
-    const PreparedMesh prepared = prepare_mesh(scene, folder_.path(), progress_);
+    const SceneMesh prepared = prepare_mesh(scene, folder_.path(), progress_);
     MemoryBudget memory = command_budget(0);
     ReadOptions read = plan_.read;
     read.work = {&memory, &progress_};
@@ -159,7 +159,7 @@ class Bench {
     const SurfaceShading shading(source.mesh, source.appearance, nullptr, {&memory, &progress_});
     for (const int levels : plan_.levels) {
       AttributesRun& run = results_.runs.emplace_back();
-      run.scene = prepared.identity.name;
+      run.scene = prepared.name;
       run.levels = levels;
       measure(source.mesh, shading, memory, run);
     }

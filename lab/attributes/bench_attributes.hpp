@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/report/charts.hpp"
-#include "lab/report/scene_runs.hpp"
+#include "lab/runs/scene_runs.hpp"
 #include "voxdag/formats/readers/read_options.hpp"
 
 namespace voxdag::lab {
@@ -65,9 +64,5 @@ AttributesResults bench_attributes(const AttributesPlan& plan, Progress& progres
 
 nlohmann::ordered_json attributes_json(const AttributesResults& results,
                                        const nlohmann::ordered_json& machine);
-std::string attributes_table(const AttributesResults& results);
-/// Returns a panel for each scene and resolution: MS-SSIM against bits per voxel. Throws Error if
-/// there is nothing to plot.
-Chart attributes_chart(const AttributesResults& results, const std::filesystem::path& file);
 
 }  // namespace voxdag::lab

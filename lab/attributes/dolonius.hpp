@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "lab/attributes/color_line.hpp"
-#include "lab/report/size_in_parts.hpp"
+#include "lab/runs/size_in_parts.hpp"
 #include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag::lab {

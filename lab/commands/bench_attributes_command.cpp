@@ -39,8 +39,8 @@ double parse_bound(const std::string& text) {
 
 void run(const BenchAttributesArguments& arguments, Session& session) {
   const AttributesResults results = measure_and_write(
-      arguments.output, session, [&] { return bench_attributes(arguments.plan, session.progress); },
-      attributes_json, attributes_chart, attributes_table);
+      "attributes", arguments.output, session,
+      [&] { return bench_attributes(arguments.plan, session.progress); }, attributes_json);
   throw_failure(results.runs);
 }
 

@@ -34,8 +34,8 @@ const CompactForm* parse_form(const std::string& text) {
 
 void run(const BenchCompactArguments& arguments, Session& session) {
   const CompactResults results = measure_and_write(
-      arguments.output, session, [&] { return bench_compact(arguments.plan, session.progress); },
-      compact_json, compact_chart, compact_table);
+      "compact", arguments.output, session,
+      [&] { return bench_compact(arguments.plan, session.progress); }, compact_json);
   throw_failure(results.runs);
 }
 

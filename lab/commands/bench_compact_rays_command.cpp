@@ -24,8 +24,7 @@ void run(const BenchCompactRaysArguments& arguments, Session& session) {
         source.empty() ? std::filesystem::path(session.subject).filename().string() : source,
         file.view(), file.grid(), arguments.plan, session.progress);
   };
-  measure_and_write(arguments.output, session, measure, compact_rays_json, compact_rays_chart,
-                    compact_rays_table);
+  measure_and_write("compact-rays", arguments.output, session, measure, compact_rays_json);
 }
 
 }  // namespace

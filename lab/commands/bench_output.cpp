@@ -2,14 +2,14 @@
 
 #include <fmt/core.h>
 
-#include <nlohmann/json.hpp>
-
+#include "lab/commands/report_program.hpp"
+#include "lab/runs/scratch_folder.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
 
 namespace voxdag::lab {
 
 std::vector<OutputFile> BenchOutput::files() const {
-  return {{"--output", json_file}, {"--plot", plot_files[0]}, {"--rays-plot", plot_files[1]}};
+  return {{"--output", json_file}, {"--plot", plot_file}};
 }
 
 void BenchOutput::check_distinct(const Session& session) const {
@@ -17,33 +17,37 @@ void BenchOutput::check_distinct(const Session& session) const {
 }
 
 void BenchOutput::check_writable(const Progress& progress) const {
-  if (!json_file.empty()) cli::check_writable(json_file);
-  bool has_plots = false;
-  for (const std::string& file : plot_files) {
-    if (file.empty()) continue;
-    cli::check_writable(file);
-    has_plots = true;
-  }
-  if (has_plots && !can_draw_charts(progress))
-    throw Error(
-        "matplotlib draws the plots, and it is not installed (apt install "
-        "python3-matplotlib)");
+  for (const std::string& file : {json_file, plot_file})
+    if (!file.empty()) cli::check_writable(file);
+  if (!plot_file.empty()) run_report({"show", "plots"}, progress);
 }
 
-void BenchOutput::write(const nlohmann::ordered_json& json,
-                        const std::vector<std::function<Chart(const std::string&)>>& charts,
-                        const std::string& text, Session& session) const {
+void BenchOutput::write(const nlohmann::ordered_json& json, const std::string& text,
+                        Session& session) const {
   session.bar.clear();
   const std::string in_json = json_text(json);
   if (!json_file.empty()) write_whole_file(json_file, in_json);
-  for (std::size_t i = 0; i < charts.size(); ++i)
-    if (!plot_files[i].empty()) draw_charts({charts[i](plot_files[i])}, ".", session.progress);
   fmt::print("{}", session.json ? in_json : text);
+}
+
+void BenchOutput::write_tables(const std::string& benchmark, const nlohmann::ordered_json& results,
+                               const std::string& start, const std::string& end,
+                               Session& session) const {
+  std::string tables;
+  if (!session.json || !plot_file.empty()) {
+    const ScratchFolder scratch;
+    const std::string file = scratch.path() / "results.json";
+    write_whole_file(file, json_text(results));
+    std::vector<std::string> arguments{"show", benchmark, file};
+    if (!plot_file.empty()) arguments.push_back(plot_file);
+    tables = run_report(arguments, session.progress);
+  }
+  write(results, start + tables + end, session);
 }
 
 void add_output_options(const Command& command, BenchOutput& output, const std::string& plot) {
   command.text("-o,--output", output.json_file, "FILE.json", "Also write the JSON to a file");
-  command.text("--plot", output.plot_files[0], "FILE.svg", plot);
+  command.text("--plot", output.plot_file, "FILE.svg", plot);
 }
 
 void add_run_options(const Command& command, Session& session) {

@@ -1,8 +1,6 @@
 #pragma once
 /// The output files of `voxdag bench`.
 #include <algorithm>
-#include <array>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -10,25 +8,25 @@
 #include "cli/command.hpp"
 #include "cli/output_files.hpp"
 #include "cli/session.hpp"
-#include "lab/report/bench_machine.hpp"
-#include "lab/report/charts.hpp"
+#include "lab/runs/machine.hpp"
 
 namespace voxdag::lab {
 using namespace cli;
 
 struct BenchOutput {
-  std::string json_file;  ///< Empty: none.
-  std::array<std::string, 2> plot_files;
+  std::string json_file, plot_file;  ///< Empty: none.
 
   std::vector<OutputFile> files() const;
   /// Throws UsageError if two files are the same, or one is an input.
   void check_distinct(const Session& session) const;
   /// Throws Error unless all files can be created and plots can be drawn. Call it before the work.
   void check_writable(const Progress& progress) const;
-  /// Writes the files, and prints JSON or `text`. `charts` return the plots.
-  void write(const nlohmann::ordered_json& json,
-             const std::vector<std::function<Chart(const std::string& file)>>& charts,
-             const std::string& text, Session& session) const;
+  /// Writes the files, and prints the JSON or `text`.
+  void write(const nlohmann::ordered_json& json, const std::string& text, Session& session) const;
+  /// Writes the files, and prints the JSON or `start`, the tables of `results` and `end`. The
+  /// program in lab/report prints the tables and draws the plot of `benchmark` from the JSON.
+  void write_tables(const std::string& benchmark, const nlohmann::ordered_json& results,
+                    const std::string& start, const std::string& end, Session& session) const;
 };
 
 /// Adds --output and --plot, whose help is `plot`.
@@ -40,17 +38,15 @@ void add_run_options(const Command& command, Session& session);
 /// Returns the line above a table: the processor, its cores and the load before the benchmark.
 std::string machine_text(const nlohmann::ordered_json& machine);
 
-/// Checks the outputs, measures, and writes the results, which it returns. measure() returns them;
-/// json(results, machine), chart(results, file) and table(results) describe them.
-template <class Measure, class Json, class MakeChart, class Table>
-auto measure_and_write(const BenchOutput& output, Session& session, const Measure& measure,
-                       const Json& json, const MakeChart& chart, const Table& table) {
+/// Checks the outputs, measures, and writes the results of `benchmark`, which it returns. measure()
+/// returns them; json(results, machine) describes them.
+template <class Measure, class Json>
+auto measure_and_write(const std::string& benchmark, const BenchOutput& output, Session& session,
+                       const Measure& measure, const Json& json) {
   output.check_writable(session.progress);
   const nlohmann::ordered_json machine = machine_json();
   auto results = measure();
-  output.write(json(results, machine),
-               {[&](const std::string& file) { return chart(results, file); }},
-               machine_text(machine) + table(results), session);
+  output.write_tables(benchmark, json(results, machine), machine_text(machine), "", session);
   return results;
 }
 

@@ -15,8 +15,8 @@
 #include "cli/parse.hpp"
 #include "lab/commands/bench_output.hpp"
 #include "lab/commands/commands.hpp"
-#include "lab/report/bench_machine.hpp"
 #include "lab/rivals/embree_rival.hpp"
+#include "lab/runs/machine.hpp"
 #include "lab/trace/bench_trace.hpp"
 #include "lab/trace/listed_scenes.hpp"
 #include "lab/trace/trace_casters.hpp"
@@ -91,14 +91,15 @@ void run(BenchTraceArguments& arguments, Session& session) {
                                    ? bench_listed_scenes(arguments.scenes, arguments.levels,
                                                          arguments.plan, session.progress)
                                    : bench_file(arguments, session);
-  arguments.output.write(
-      trace_json(results, machine),
-      {[&](const std::string& file) { return trace_chart(results, file); }},
-      fmt::format("{}{}, {} threads, load average {:.2f} before\n\n{}",
+  std::string failures;
+  for (const std::string& failure : results.failures) failures += "\n" + failure + "\n";
+  arguments.output.write_tables(
+      "trace", trace_json(results, machine),
+      fmt::format("{}{}, {} threads, load average {:.2f} before\n\n",
                   results.cuda_device.empty() ? "" : results.cuda_device + "; ",
                   machine.at("processor").get<std::string>(), results.threads,
-                  machine.at("load_average").get<double>(), trace_table(results)),
-      session);
+                  machine.at("load_average").get<double>()),
+      failures, session);
   if (!results.failures.empty()) throw Error(results.failures.front());
 }
 
@@ -198,12 +199,11 @@ void add_bench_trace_command(const Command& bench, Session& session) {
       "and without beams");
   command.number("--repeat", plan.repeat, NumberRange::whole(1, 1000), "N",
                  "Number of casts; the fastest counts");
-  command.text(
-      "--openvdb", plan.openvdb_program, "PROGRAM",
-      "Also cast the rays with OpenVDB: the path of rival_openvdb_trace (bench/README.md)");
+  command.text("--openvdb", plan.openvdb_program, "PROGRAM",
+               "Also cast the rays with OpenVDB: the path of rival_openvdb_trace (lab/README.md)");
   command.text("--nanovdb", plan.nanovdb_program, "PROGRAM",
                "Also cast the rays with NanoVDB on the CUDA device: the path of "
-               "rival_nanovdb_trace (bench/README.md)");
+               "rival_nanovdb_trace (lab/README.md)");
   add_output_options(command, arguments->output, "Plot bars of rays per second");
   add_device_option(command, plan.device);
   add_run_options(command, session);

@@ -5,10 +5,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "lab/build/bench_mesh.hpp"
 #include "lab/commands/bench_output.hpp"
 #include "lab/commands/commands.hpp"
-#include "lab/report/bench_machine.hpp"
+#include "lab/runs/machine.hpp"
+#include "lab/runs/scene_mesh.hpp"
 #include "lab/untrusted/untrusted.hpp"
 #include "voxdag/core/error.hpp"
 
@@ -42,7 +42,7 @@ void add_bench_untrusted_command(const Command& bench_command, Session& session)
       plan.program = std::filesystem::canonical(plan.program).string();
       const nlohmann::ordered_json machine = machine_json();
       const std::vector<UntrustedRun> runs = bench_untrusted(plan, session.progress);
-      arguments->output.write(untrusted_json(runs, machine), {}, untrusted_table(runs), session);
+      arguments->output.write(untrusted_json(runs, machine), untrusted_table(runs), session);
       for (const UntrustedRun& run : runs)
         if (!run.failure.empty()) throw Error("\"" + run.name + "\" " + run.failure);
     };

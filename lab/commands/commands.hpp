@@ -8,6 +8,7 @@ using namespace cli;
 void add_bench_build_command(const Command& program, Session& session);
 void add_bench_trace_command(const Command& program, Session& session);
 void add_bench_esvo_command(const Command& program, Session& session);
+void add_bench_esvo_rays_command(const Command& program, Session& session);
 void add_bench_attributes_command(const Command& program, Session& session);
 void add_bench_compact_command(const Command& program, Session& session);
 void add_bench_compact_rays_command(const Command& program, Session& session);

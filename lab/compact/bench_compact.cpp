@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "lab/build/bench_mesh.hpp"
 #include "lab/compact/plain_sizes.hpp"
-#include "lab/report/scratch_folder.hpp"
+#include "lab/runs/scene_mesh.hpp"
+#include "lab/runs/scratch_folder.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/dag/stop_watch.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
@@ -56,13 +56,13 @@ class Bench {
   }
 
   void measure_mesh(const std::string& scene) {
-    const PreparedMesh prepared = prepare_mesh(scene, folder_.path(), progress_);
+    const SceneMesh prepared = prepare_mesh(scene, folder_.path(), progress_);
     MemoryBudget memory = command_budget(0);
     ReadOptions read = plan_.read;
     read.work = {&memory, &progress_};
     const Mesh mesh = read_mesh(prepared.path, read);
     for (const int levels : plan_.levels) {
-      CompactRun& run = add_run(prepared.identity.name, levels);
+      CompactRun& run = add_run(prepared.name, levels);
       StopWatch watch;
       const BuildResult built =
           build_svdag(mesh, fit_grid(mesh, levels), {}, {&memory, &progress_});

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "lab/compact/compact_forms.hpp"
-#include "lab/report/charts.hpp"
-#include "lab/report/scene_runs.hpp"
+#include "lab/runs/scene_runs.hpp"
 #include "voxdag/formats/readers/read_options.hpp"
 
 namespace voxdag::lab {
@@ -60,9 +59,5 @@ CompactResults bench_compact(const CompactPlan& plan, Progress& progress);
 
 nlohmann::ordered_json compact_json(const CompactResults& results,
                                     const nlohmann::ordered_json& machine);
-std::string compact_table(const CompactResults& results);
-/// Returns a panel for each resolution, with bars of bits per voxel for the forms that rays can
-/// walk. Throws Error if there is nothing to plot.
-Chart compact_chart(const CompactResults& results, const std::filesystem::path& file);
 
 }  // namespace voxdag::lab

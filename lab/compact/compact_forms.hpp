@@ -2,7 +2,7 @@
 /// The forms that `voxdag bench compact` compares.
 #include <span>
 
-#include "lab/report/size_in_parts.hpp"
+#include "lab/runs/size_in_parts.hpp"
 #include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 

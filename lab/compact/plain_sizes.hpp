@@ -3,7 +3,7 @@
 ///
 /// Viktor Kämpe, Erik Sintorn and Ulf Assarsson: High Resolution Sparse Voxel DAGs, SIGGRAPH 2013,
 /// Section 5 and Table 2.
-#include "lab/report/size_in_parts.hpp"
+#include "lab/runs/size_in_parts.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag::lab {

@@ -16,9 +16,9 @@
 ///
 /// The papers leave open how nodes with equally many pointers are ordered; sizes depend on it by
 /// about a thousandth. Here they keep the order of the DAG. The authors' program does not see that
-/// a node is its own mirror image if its children are, and takes up to 6% more (bench/README.md).
+/// a node is its own mirror image if its children are, and takes up to 6% more (lab/README.md).
 #include "lab/compact/merged_dag.hpp"
-#include "lab/report/size_in_parts.hpp"
+#include "lab/runs/size_in_parts.hpp"
 
 namespace voxdag::lab {
 

@@ -26,7 +26,7 @@
 /// levels, and neither does this. It leaves the order of equally frequent nodes and pointers open;
 /// here they keep the order of the DAG.
 #include "lab/compact/transform_dag.hpp"
-#include "lab/report/size_in_parts.hpp"
+#include "lab/runs/size_in_parts.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag::lab {

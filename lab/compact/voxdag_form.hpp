@@ -1,6 +1,6 @@
 #pragma once
 /// The bytes of voxdag's own compact form.
-#include "lab/report/size_in_parts.hpp"
+#include "lab/runs/size_in_parts.hpp"
 #include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 

@@ -11,7 +11,6 @@
 
 #include "lab/compact_rays/touched_memory.hpp"
 #include "lab/rays/trace_rays.hpp"
-#include "lab/report/charts.hpp"
 #include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag::lab {
@@ -64,9 +63,5 @@ CompactRaysResults bench_compact_rays(const std::string& scene, const SvdagView&
 
 nlohmann::ordered_json compact_rays_json(const CompactRaysResults& results,
                                          const nlohmann::ordered_json& machine);
-std::string compact_rays_table(const CompactRaysResults& results);
-/// Returns the time of each class of rays over the bytes, as ratios to single rays at the plain
-/// form and to its bytes.
-Chart compact_rays_chart(const CompactRaysResults& results, const std::filesystem::path& file);
 
 }  // namespace voxdag::lab

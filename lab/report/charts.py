@@ -1,22 +1,20 @@
-"""Draws charts with matplotlib.
+"""Draws charts with matplotlib (Debian's python3-matplotlib), if it is installed.
 
-Reads a list of charts as JSON from the file argv[1] and writes them as 0.svg, 1.svg and so on.
-bench/report/charts.hpp says what the fields mean.
+A chart is {"file", "panels"}; its panels stand side by side. panel(), axis() and line() say what
+they hold. NaN leaves a gap in a line.
 """
 
-import json
-import sys
+import importlib.util
+import math
+import os
 
-import matplotlib
-
-matplotlib.use("svg")
-from matplotlib import pyplot, ticker  # noqa: E402
+from document import Error
 
 # Okabe and Ito's colours, which colour-blind readers can tell apart.
 PALETTE = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999"]
 MARKERS = "osD^vP*X"
 
-matplotlib.rcParams.update({
+STYLE = {
     "svg.hashsalt": "voxdag",
     "font.family": "sans-serif",
     "font.size": 9,
@@ -31,7 +29,41 @@ matplotlib.rcParams.update({
     "legend.fontsize": 8,
     "lines.linewidth": 1.4,
     "lines.markersize": 4,
-})
+}
+
+
+def axis(label, scale="linear", from_zero=True):
+    """`scale`: linear, log2 (resolutions) or log10. A linear y axis begins at 0 if `from_zero`."""
+    return {"label": label, "scale": scale, "from_zero": from_zero}
+
+
+def line(label, x, y, color=0, style="solid", markers=False):
+    """`label`: empty: not in the legend. Lines of one colour belong together; the palette has 8.
+    `style`: solid, dashed (published figures and bounds) or dotted."""
+    return {"label": label, "x": list(x), "y": list(y), "color": color, "style": style, "markers": markers}
+
+
+def panel(title, x, y, lines, groups=()):
+    """`groups` are the names of groups of bars: each line then has a y for each group, and no x."""
+    return {"title": title, "x": x, "y": y, "lines": lines, "groups": list(groups)}
+
+
+def is_installed():
+    return importlib.util.find_spec("matplotlib") is not None
+
+
+def draw_charts(charts, folder):
+    """Draws the charts as SVG files in the folder; returns whether matplotlib is installed. Equal
+    charts give equal bytes with the same version of matplotlib. Raises Error."""
+    if not is_installed():
+        return False
+    for chart in charts:
+        path = os.path.join(folder, chart["file"])
+        try:
+            draw(chart, path)
+        except OSError as error:
+            raise Error(f"{path}: {error.strerror}") from error
+    return True
 
 
 def resolution_name(value, _position=None):
@@ -40,6 +72,7 @@ def resolution_name(value, _position=None):
 
 
 def set_scale(axis, set_axis_scale, scale):
+    from matplotlib import ticker
     if scale == "log2":
         set_axis_scale("log", base=2)
         axis.set_major_formatter(ticker.FuncFormatter(resolution_name))
@@ -51,7 +84,7 @@ def set_scale(axis, set_axis_scale, scale):
 
 
 def numbers(values):
-    return [float("nan") if value is None else value for value in values]
+    return [math.nan if value is None else value for value in values]
 
 
 def draw_lines(axes, panel):
@@ -102,6 +135,10 @@ def draw_panel(axes, panel):
 
 
 def draw(chart, file):
+    import matplotlib
+    matplotlib.use("svg")
+    from matplotlib import pyplot
+    matplotlib.rcParams.update(STYLE)
     panels = chart["panels"]
     # Two panels beside each other have the width of a page.
     columns = min(len(panels), 2)
@@ -114,12 +151,3 @@ def draw(chart, file):
         draw_panel(axes, panel)
     figure.savefig(file, format="svg", metadata={"Date": None})
     pyplot.close(figure)
-
-
-def main():
-    with open(sys.argv[1], encoding="utf-8") as file:
-        for i, chart in enumerate(json.load(file)):
-            draw(chart, f"{i}.svg")
-
-
-main()

@@ -2,8 +2,6 @@
 
 namespace voxdag::lab {
 
-std::optional<RivalBuild> Rival::build(const RivalTask&, Progress&) { return std::nullopt; }
-
 std::vector<TraceRunner> Rival::prepare(const Grid&, const RaySet&) { return {}; }
 
 std::vector<RivalTime> Rival::cast_all(int, Progress&) { return {}; }

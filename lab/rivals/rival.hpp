@@ -1,33 +1,14 @@
 #pragma once
 /// The interface of rivals: other programs and libraries that do voxdag's work.
-#include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "lab/rays/trace_rays.hpp"
 #include "lab/rays/trace_runner.hpp"
-#include "lab/report/bench_child.hpp"
 #include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag::lab {
-
-/// One build for a rival.
-struct RivalTask {
-  std::filesystem::path mesh;  ///< Absolute.
-  int levels = 0;              ///< The grid has 2^levels voxels per side.
-  double seconds_limit = 0;    ///< The rival is ended after this time.
-};
-
-/// The result of a rival's build.
-struct RivalBuild {
-  std::string command;  ///< The command line that ran.
-  std::string failure;  ///< Why there is no result, or empty.
-  ProcessCost cost;
-  std::uint64_t output_bytes = 0;  ///< Size of all files that it left.
-  std::string reported;            ///< The last line of its output if that is a JSON object.
-};
 
 /// A set of rays in one scene.
 struct RaySet {
@@ -43,8 +24,7 @@ struct RivalTime {
   std::uint64_t bytes = 0;  ///< Size of the structure that it cast at; 0 if it does not say.
 };
 
-/// A rival builds or casts rays, or both. It keeps the default of functions that it does not
-/// support.
+/// A rival casts rays. It keeps the default of functions that it does not support.
 class Rival {
  public:
   explicit Rival(std::string name) : name_(std::move(name)) {}
@@ -53,10 +33,6 @@ class Rival {
   Rival& operator=(const Rival&) = delete;
 
   const std::string& name() const { return name_; }
-
-  /// Builds from a mesh file in a separate process. Returns nothing if the rival does not build.
-  /// Throws Cancelled.
-  virtual std::optional<RivalBuild> build(const RivalTask& task, Progress& progress);
 
   /// Takes a set of rays and returns casts of it, which run in turns with voxdag's casts. They are
   /// valid until the next call. If several have the same name, the fastest counts. A rival that

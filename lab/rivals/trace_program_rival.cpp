@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/rays/trace_measure.hpp"
-#include "lab/report/bench_child.hpp"
+#include "lab/runs/child.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/file/npy.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "lab/report/scratch_folder.hpp"
 #include "lab/rivals/rival.hpp"
+#include "lab/runs/scratch_folder.hpp"
 #include "voxdag/stored/svdag/voxel_set.hpp"
 
 namespace voxdag::lab {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "lab/rays/trace_rays.hpp"
-#include "lab/report/charts.hpp"
 #include "lab/trace/soft_shadows.hpp"
 #include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/cuda/device_choice.hpp"
@@ -90,12 +89,8 @@ struct TraceResults {
 void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progress,
                  TraceResults& results);
 
-/// Returns an array with an object per row and rival; bench/README.md lists the keys.
+/// Returns an array with an object per row and rival; lab/README.md lists the keys.
 nlohmann::ordered_json trace_json(const TraceResults& results,
                                   const nlohmann::ordered_json& machine);
-std::string trace_table(const TraceResults& results);
-/// Returns a chart of rays per second by class as bars, a panel per scene, resolution and layout.
-/// Throws Error without any rays.
-Chart trace_chart(const TraceResults& results, const std::filesystem::path& file);
 
 }  // namespace voxdag::lab

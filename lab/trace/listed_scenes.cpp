@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "lab/report/scratch_folder.hpp"
+#include "lab/runs/scratch_folder.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/io/process_memory.hpp"

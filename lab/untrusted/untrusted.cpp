@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "lab/report/scratch_folder.hpp"
+#include "lab/runs/scratch_folder.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/report/human.hpp"
 

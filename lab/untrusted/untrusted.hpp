@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/report/bench_child.hpp"
+#include "lab/runs/child.hpp"
 #include "lab/untrusted/untrusted_case.hpp"
 
 namespace voxdag::lab {

@@ -108,6 +108,14 @@ bool Process::has_ended() const {
   return state.si_pid != 0;
 }
 
+bool Process::wait_until(const std::function<bool()>& is_so) const {
+  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+    const bool is_last = has_ended();
+    if (is_so()) return true;
+    if (is_last) return false;
+  }
+}
+
 bool Process::wait_until_it_warns(const std::string& text) const {
   for (;; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
     const bool is_last = has_ended();

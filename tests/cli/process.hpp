@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ class Process {
   ~Process();
 
   void send_signal(int number) const;
+  /// Waits until is_so(). Returns false if the program has ended without.
+  bool wait_until(const std::function<bool()>& is_so) const;
   /// Waits until the program has a handler for the signal, or has ended.
   void wait_until_it_catches(int number) const;
   /// Waits until the program has written to a file in `folder`, which may have no name. Returns

@@ -158,9 +158,10 @@ TEST_F(BenchBuild, AKilledBenchmarkLeavesNoScratchFolder) {
       voxdag_command({"bench", "build", mesh_, "-r", "64", "--rival", "slow=sleep 60"});
   command.insert(command.begin(), {"env", "TMPDIR=" + scratch.path().string()});
   Process process(command);
-  while (scratch.count() == 0) usleep(1000);
+  const bool has_begun = process.wait_until([&] { return scratch.count() > 0; });
   process.send_signal(SIGKILL);
-  process.wait();
+  const ProcessResult killed = process.wait();
+  ASSERT_TRUE(has_begun) << killed.err;
   while (scratch.count() != 0) usleep(1000);  // ctest's time limit is the limit
 }
 

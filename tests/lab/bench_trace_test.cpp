@@ -158,7 +158,7 @@ TEST_F(BenchTrace, RefusesWhatItCannotMeasure) {
   expect_failure(bench({path("in.vdag"), "--nanovdb", path("absent")}), 1, "absent");
 }
 
-/// Writes a program that obeys bench/rivals/trace_program.hpp and hits nothing.
+/// Writes a program that obeys lab/rivals/trace_program.hpp and hits nothing.
 void write_rival_that_hits_nothing(const std::string& file) {
   write_text(file, R"(#!/bin/sh
 [ -f "$1" ] && [ "$2" -ge 1 ] && [ "$3" -eq 1 ] || exit 1

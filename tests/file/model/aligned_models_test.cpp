@@ -35,9 +35,7 @@ TEST(AlignedModels, ResultsLieInTheGridThatHoldsThem) {
 TEST(AlignedModels, GridsThatDoNotAlignAreRefused) {
   const DagModel first = model_of(3, {{0, 0, 0}}, {0, 0, 0});
   const DagModel second = model_of(3, {{0, 0, 0}}, {0.5, 0, 0});
-  EXPECT_NE(error_of([&] {
-              AlignedModels(first, second, {});
-            }).find("the grids do not align"),
+  EXPECT_NE(error_of([&] { AlignedModels(first, second, {}); }).find("the grids do not align"),
             std::string::npos);
 }
 
