@@ -1,5 +1,7 @@
 #include "voxdag/formats/imports/points/las_points.hpp"
 
+#include <cmath>
+
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/las_header.hpp"
@@ -20,9 +22,16 @@ class LasPoints : public VoxelSource {
 
   bool has_points() const override { return true; }
   bool has_colors() const override { return color_ > 0; }
+  /// The products and sums of add() are rounded.
+  CoordinateError coordinate_error() const override {
+    CoordinateError error{0x1p-51, {}};
+    for (int axis = 0; axis < 3; ++axis)
+      error.absolute[axis] = 0x1p-52 * std::abs(header_.offset[axis]);
+    return error;
+  }
   std::vector<std::string> warnings() const override {
     if (!header_.has_two_counts) return {};
-    return {name_ + ": the header has two counts of points; the legacy one, " +
+    return {"the header has two counts of points; the legacy one, " +
             std::to_string(header_.points) + ", is used"};
   }
   void visit_all(const VisitBatch& visit) const override {

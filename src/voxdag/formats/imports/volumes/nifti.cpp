@@ -30,7 +30,8 @@ std::unique_ptr<VoxelSource> open_nifti(const std::filesystem::path& path,
                  .encoding = is_gzip ? Encoding::kGzip : Encoding::kRaw,
                  .may_have_more = header.has_more_volumes};
   file.volume.threshold = threshold;
-  file.grid = grid_of_volume(path, header.volume.size, header.placement, file.warnings);
+  file.map = VolumeMap(path, header.volume.size, header.placement, file.warnings);
+  file.has_place = header.placement.is_known;
   if (header.has_more_volumes)
     file.warnings.emplace_back("the file has several volumes; only the first one is read");
   (is_gzip ? file.skipped : file.begin) = header.data;
