@@ -6,6 +6,7 @@
 #include "random_volume.hpp"
 #include "support/brute_svdag.hpp"
 #include "voxdag/formats/imports/volumes/value_test.hpp"
+#include "voxdag/formats/imports/volumes/value_type.hpp"
 
 namespace voxdag {
 namespace {
