@@ -27,7 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   MemoryBudget memory(kMemoryBytes);  // Bounds the size of instanced glTF meshes.
   MeshSource source{bytes, "fuzz", {}, nullptr, {}};
-  source.options.memory = &memory;
+  source.options.work = &memory;
   const std::uint64_t start = counter.count();
   try {
     read_chosen_mesh(data[0], source);

@@ -9,11 +9,7 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/formats/imports/points/las_points.hpp"
-#include "voxdag/formats/imports/points/npy_points.hpp"
-#include "voxdag/formats/imports/points/pcd_points.hpp"
-#include "voxdag/formats/imports/points/ply_points.hpp"
-#include "voxdag/formats/imports/points/xyz_points.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
 
 namespace {
 

@@ -8,11 +8,7 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/formats/imports/volumes/binvox.hpp"
-#include "voxdag/formats/imports/volumes/nifti.hpp"
-#include "voxdag/formats/imports/volumes/npy_volume.hpp"
-#include "voxdag/formats/imports/volumes/nrrd.hpp"
-#include "voxdag/formats/imports/volumes/vox.hpp"
+#include "voxdag/formats/imports/volumes/volume_sources.hpp"
 
 namespace voxdag {
 namespace {

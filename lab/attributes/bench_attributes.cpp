@@ -154,10 +154,9 @@ class Bench {
     const PreparedMesh prepared = prepare_mesh(scene, folder_.path(), progress_);
     MemoryBudget memory = command_budget(0);
     ReadOptions read = plan_.read;
-    read.progress = &progress_;
-    read.memory = &memory;
+    read.work = {&memory, &progress_};
     const MeshWithAppearance source = read_mesh_with_appearance(prepared.path, read);
-    const SurfaceShading shading(source.mesh, source.appearance, nullptr, &progress_, &memory);
+    const SurfaceShading shading(source.mesh, source.appearance, nullptr, {&memory, &progress_});
     for (const int levels : plan_.levels) {
       AttributesRun& run = results_.runs.emplace_back();
       run.scene = prepared.identity.name;
@@ -169,9 +168,7 @@ class Bench {
   void measure(const Mesh& mesh, const SurfaceShading& shading, MemoryBudget& memory,
                AttributesRun& run) {
     const Grid grid = fit_grid(mesh, run.levels);
-    BuildOptions options;
-    options.memory = &memory;
-    const BuildResult built = build_svdag(mesh, grid, options, &progress_);
+    const BuildResult built = build_svdag(mesh, grid, {}, {&memory, &progress_});
     const SvdagView dag = built.dag.view();
     run.voxels = count_svdag(dag).voxels;
     if (run.voxels == 0) throw Error(run.scene, std::to_string(1 << run.levels), "has no voxels");
@@ -180,7 +177,7 @@ class Bench {
     run.index_bytes = index.view().bytes();
     CellColors cells(index.cells);
     StopWatch watch;
-    filter_cells(mesh, grid, dag, index.view(), &shading, cells, &memory, &progress_);
+    filter_cells(mesh, grid, dag, index.view(), &shading, cells, {&memory, &progress_});
     run.filter_seconds = watch.lap();
     const ColoredScene colored(dag, grid, index.view(), std::move(cells.colors), plan_.views,
                                progress_);

@@ -59,15 +59,13 @@ class Bench {
     const PreparedMesh prepared = prepare_mesh(scene, folder_.path(), progress_);
     MemoryBudget memory = command_budget(0);
     ReadOptions read = plan_.read;
-    read.progress = &progress_;
-    read.memory = &memory;
+    read.work = {&memory, &progress_};
     const Mesh mesh = read_mesh(prepared.path, read);
-    BuildOptions options;
-    options.memory = &memory;
     for (const int levels : plan_.levels) {
       CompactRun& run = add_run(prepared.identity.name, levels);
       StopWatch watch;
-      const BuildResult built = build_svdag(mesh, fit_grid(mesh, levels), options, &progress_);
+      const BuildResult built =
+          build_svdag(mesh, fit_grid(mesh, levels), {}, {&memory, &progress_});
       run.build_seconds = watch.lap();
       measure(built.dag.view(), run);
     }

@@ -81,7 +81,7 @@ class Bench {
     const CompactSvdag compact = encode_svdag(dag_, {.tables = tables}, &progress_);
     point.encode_seconds = encoding.seconds();
     const Watch decoding;
-    if (decode_svdag(compact.view(), nullptr, &progress_).nodes.size() != dag_.node_words())
+    if (decode_svdag(compact.view(), &progress_).nodes.size() != dag_.node_words())
       throw Error("the compact form does not give the DAG back");
     point.decode_seconds = decoding.seconds();
     point.bytes = compact_head(compact).size() + compact.words().size() * 4;

@@ -177,7 +177,7 @@ class SceneRays {
     pairs_ = pairs_of(results, scene.name);
     if (pairs_.empty()) return;
     if (scene.is_plain() && EmbreeRival::is_available())
-      embree_.emplace(read_mesh(mesh_file, &progress));
+      embree_.emplace(read_mesh(mesh_file, {&progress}));
     const EsvoFile finest(pairs_.back().contours->file);
     views_ = bench_views(finest.view(), finest.grid(), 4.0 / 3, plan.views);
   }

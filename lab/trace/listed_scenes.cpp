@@ -30,7 +30,7 @@ constexpr std::array kScenes{ListedScene{"crytek_sponza", "sponza.obj"},
 Mesh mesh_of(const ListedScene& scene, const fs::path& folder, Progress& progress) {
   if (scene.file == nullptr) return make_scene(scene.name);
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (entry.path().filename() == scene.file) return read_mesh(entry.path(), &progress);
+    if (entry.path().filename() == scene.file) return read_mesh(entry.path(), {&progress});
   throw Error(folder, "", std::string("has no ") + scene.file);
 }
 
@@ -38,11 +38,9 @@ Mesh mesh_of(const ListedScene& scene, const fs::path& folder, Progress& progres
 void bench_listed(const ListedScene& listed, const Mesh& mesh, int levels, const TracePlan& plan,
                   Progress& progress, TraceResults& results) {
   MemoryBudget memory = command_budget(0);
-  BuildOptions build;
-  build.memory = &memory;
   VdagMetadata metadata;
   metadata.grid = fit_grid(mesh, levels);
-  const Svdag dag = build_svdag(mesh, metadata.grid, build, &progress).dag;
+  const Svdag dag = build_svdag(mesh, metadata.grid, {}, {&memory, &progress}).dag;
   TraceScene scene{listed.name, metadata.grid, dag.view(), &mesh, {}};
   const ScratchFolder folder;
   if (plan.program_option() != nullptr) {

@@ -28,9 +28,9 @@ std::vector<Ray> rays_of(const Array<float>& origins, const Array<float>& direct
 }
 
 std::vector<Hit> cast_all(const Dag& dag, const std::vector<Ray>& rays) {
-  return run_work([&](Progress& progress) {
+  return run_work([&](Work work) {
     std::vector<Hit> hits(rays.size());
-    trace_batch(dag.scene(), dag.grid(), rays, hits, &progress);
+    trace_batch(dag.scene(), dag.grid(), rays, hits, work);
     return hits;
   });
 }

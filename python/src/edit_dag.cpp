@@ -27,8 +27,8 @@ DagPointer edited_dag(const Dag& source, Svdag dag, const std::string& edit) {
 }
 
 DagPointer combined(const Dag& a, const Dag& b, SetOperation operation, const char* name) {
-  return run_work([&](Progress& progress) {
-    const AlignedModels aligned(a.model(), b.model(), nullptr, &progress);
+  return run_work([&](Work work) {
+    const AlignedModels aligned(a.model(), b.model(), work);
     return std::make_shared<Dag>(
         edited(a.model(), aligned.result(operation), aligned.grid_of(operation),
                std::string(name) + " " + b.model().metadata().source.name));
@@ -44,11 +44,11 @@ Neighbours neighbours_of(int count) {
 DagPointer grown(const Dag& dag, int steps, int neighbours, bool is_dilation) {
   if (steps < 1) throw py::value_error("steps must be at least 1");
   const Neighbours kind = neighbours_of(neighbours);
-  return run_work([&](Progress& progress) {
-    return edited_dag(dag,
-                      is_dilation ? dilate(dag.view(), steps, kind, nullptr, &progress)
-                                  : erode(dag.view(), steps, kind, nullptr, &progress),
-                      (is_dilation ? "dilated by " : "eroded by ") + std::to_string(steps));
+  return run_work([&](Work work) {
+    return edited_dag(
+        dag,
+        is_dilation ? dilate(dag.view(), steps, kind, work) : erode(dag.view(), steps, kind, work),
+        (is_dilation ? "dilated by " : "eroded by ") + std::to_string(steps));
   });
 }
 
@@ -58,16 +58,16 @@ std::string text_of(Vec3i v) {
 
 DagPointer cropped(const Dag& dag, const Window& window) {
   const Box3i box = window_of(dag, window);
-  return run_work([&](Progress& progress) {
-    return edited_dag(dag, crop(dag.view(), box, nullptr, &progress),
+  return run_work([&](Work work) {
+    return edited_dag(dag, crop(dag.view(), box, work),
                       "cropped to " + text_of(box.lo) + "," + text_of(box.hi));
   });
 }
 
 DagPointer shifted(const Dag& dag, const std::array<std::int32_t, 3>& offset, bool drop_outside) {
   const Vec3i by{offset[0], offset[1], offset[2]};
-  return run_work([&](Progress& progress) {
-    DagPointer moved = edited_dag(dag, shift(dag.view(), by, dag.grid().levels, nullptr, &progress),
+  return run_work([&](Work work) {
+    DagPointer moved = edited_dag(dag, shift(dag.view(), by, dag.grid().levels, work),
                                   "shifted by " + text_of(by));
     const std::uint64_t lost =
         dag.model().metadata().counts.voxels - moved->model().metadata().counts.voxels;
@@ -79,26 +79,25 @@ DagPointer shifted(const Dag& dag, const std::array<std::int32_t, 3>& offset, bo
 }
 
 DagPointer reoriented(const Dag& dag, const Orientation& orientation, const std::string& edit) {
-  return run_work([&](Progress& progress) {
-    return edited_dag(dag, reorient(dag.view(), orientation, nullptr, &progress), edit);
-  });
+  return run_work(
+      [&](Work work) { return edited_dag(dag, reorient(dag.view(), orientation, work), edit); });
 }
 
 DagPointer coarser(const Dag& dag, std::int64_t resolution) {
   const int levels = levels_of(resolution);
   if (levels > dag.grid().levels) throw py::value_error("resolution exceeds that of the DAG");
-  return run_work([&](Progress& progress) {
-    Svdag coarse = coarsen(dag.view(), levels, nullptr, &progress);
+  return run_work([&](Work work) {
+    Svdag coarse = coarsen(dag.view(), levels, work);
     VdagMetadata metadata = coarser_metadata(dag.model().metadata(), coarse.view());
     metadata.attributes = {};
-    return std::make_shared<Dag>(DagModel(std::move(coarse), {}, std::move(metadata), nullptr));
+    return std::make_shared<Dag>(DagModel(std::move(coarse), {}, std::move(metadata)));
   });
 }
 
 py::array_t<std::uint64_t> component_table(const Dag& dag, int neighbours) {
   const Neighbours kind = neighbours_of(neighbours);
-  const std::vector<ComponentSizes> sizes = run_work(
-      [&](Progress& progress) { return component_sizes(dag.view(), kind, nullptr, &progress); });
+  const std::vector<ComponentSizes> sizes =
+      run_work([&](Work work) { return component_sizes(dag.view(), kind, work); });
   py::array_t<std::uint64_t> table({static_cast<py::ssize_t>(sizes.size()), py::ssize_t{2}});
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     table.mutable_at(static_cast<py::ssize_t>(i), 0) = sizes[i].voxels;
@@ -109,8 +108,8 @@ py::array_t<std::uint64_t> component_table(const Dag& dag, int neighbours) {
 
 DagPointer large_components(const Dag& dag, std::uint64_t least, int neighbours) {
   const Neighbours kind = neighbours_of(neighbours);
-  return run_work([&](Progress& progress) {
-    return edited_dag(dag, keep_components(dag.view(), least, kind, nullptr, &progress),
+  return run_work([&](Work work) {
+    return edited_dag(dag, keep_components(dag.view(), least, kind, work),
                       "components of at least " + std::to_string(least) + " voxels");
   });
 }
@@ -183,9 +182,8 @@ void add_edits(DagClass& dag) {
       .def(
           "fill_cavities",
           [](const Dag& d) {
-            return run_work([&](Progress& progress) {
-              return edited_dag(d, fill_cavities(d.view(), nullptr, &progress), "filled");
-            });
+            return run_work(
+                [&](Work work) { return edited_dag(d, fill_cavities(d.view(), work), "filled"); });
           },
           "Fill the empty places that no way over faces connects with the sides of the grid.");
 }

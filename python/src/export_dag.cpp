@@ -24,8 +24,8 @@ std::vector<std::filesystem::path> export_dag(const Dag& dag, const std::filesys
     throw py::value_error("the extension must be " + export_extensions());
   if (faces && path.extension() != ".ply")
     throw py::value_error("faces are a choice for .ply only");
-  return run_work([&](Progress& progress) -> std::vector<std::filesystem::path> {
-    options.progress = [&](double, std::uint64_t) { progress.throw_if_cancelled(); };
+  return run_work([&](Work work) -> std::vector<std::filesystem::path> {
+    options.progress = [&](double, std::uint64_t) { work.poll(); };
     const VoxelSet voxels(dag.view());
     if (!slices) return export_voxels(path, voxels, dag.grid(), {faces}, options);
     export_slices(path, axis, voxels, dag.grid(), options);

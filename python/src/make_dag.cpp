@@ -52,22 +52,22 @@ std::optional<SolidRule> rule_of(const py::object& solid) {
 /// Builds the DAG of a mesh, as `voxdag build` does.
 DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
                       const std::optional<SolidRule>& solid, bool colors, const std::string& name,
-                      Progress& progress) {
+                      Work work) {
   const Mesh& mesh = source.mesh;
   VdagMetadata metadata;
   metadata.grid = grid_for(mesh, grid);
   metadata.source = {name, mesh.vertices.size(), mesh.triangles.size()};
   metadata.build = settings_of(grid);
   if (solid) add_solid_settings({*solid}, metadata.build);
-  Svdag dag = build_svdag(mesh, metadata.grid, {}, &progress).dag;
-  if (solid) dag = fill_solid(dag.view(), mesh, metadata.grid, {*solid}, nullptr, &progress);
+  Svdag dag = build_svdag(mesh, metadata.grid, {}, work).dag;
+  if (solid) dag = fill_solid(dag.view(), mesh, metadata.grid, {*solid}, work);
   DagAttributes attributes;
   if (colors) {
-    const SurfaceShading shading(mesh, source.appearance, nullptr, &progress);
+    const SurfaceShading shading(mesh, source.appearance, nullptr, work);
     AttributeOptions options;
     options.colors = true;
     options.finest_level = metadata.grid.levels;
-    attributes = build_attributes(mesh, metadata.grid, dag.view(), &shading, options, &progress);
+    attributes = build_attributes(mesh, metadata.grid, dag.view(), &shading, options, work);
     metadata.attributes.resolution = metadata.grid.resolution();
     metadata.attributes.colors = {options.color_bound, attributes.color_errors.squared};
   }
@@ -118,8 +118,8 @@ DagPointer build(const Array<float>& vertices, const Array<std::int64_t>& faces,
   const std::optional<SolidRule> rule = rule_of(solid);
   if (rule && colors) throw py::value_error("a solid has no colours inside: leave out colors");
   const MeshWithAppearance source = mesh_of(vertices, faces, colors);
-  return run_work([&](Progress& progress) {
-    return build_mesh(source, grid, rule, colors.has_value(), "arrays", progress);
+  return run_work([&](Work work) {
+    return build_mesh(source, grid, rule, colors.has_value(), "arrays", work);
   });
 }
 
@@ -129,15 +129,15 @@ DagPointer build_file(const std::filesystem::path& path, std::optional<std::int6
   const GridRequest grid = grid_request(resolution, pitch, bounds);
   const std::optional<SolidRule> rule = rule_of(solid);
   if (rule && colors) throw py::value_error("a solid has no colours inside: leave out colors");
-  return run_work([&](Progress& progress) {
-    const ReadOptions options{.progress = &progress};
+  return run_work([&](Work work) {
+    const ReadOptions options{.work = work};
     MeshWithAppearance source;
     if (colors)
       source = read_mesh_with_appearance(path, options);
     else
       source.mesh = read_mesh(path, options);
     return with_file_name(path.string(), [&] {
-      return build_mesh(source, grid, rule, colors, path.filename().string(), progress);
+      return build_mesh(source, grid, rule, colors, path.filename().string(), work);
     });
   });
 }
@@ -174,8 +174,8 @@ std::vector<Rgb8> colors_of(const std::optional<Array<std::uint8_t>>& colors, st
 }
 
 DagPointer import_source(const VoxelSource& source, const ImportOptions& options,
-                         const std::string& name, Progress& progress) {
-  return std::make_shared<Dag>(import_model(source, options, name, &progress).model);
+                         const std::string& name, Work work) {
+  return std::make_shared<Dag>(import_model(source, options, name, work).model);
 }
 
 /// Returns the grid of voxels that have numbers: by default the smallest one that holds them.
@@ -201,8 +201,7 @@ DagPointer from_points(const Array<double>& points, std::optional<std::int64_t> 
   std::vector<Vec3d> places = rows_of(points, "points");
   std::vector<Rgb8> values = colors_of(colors, places.size());
   const ArraySource source(std::move(places), std::move(values), true);
-  return run_work(
-      [&](Progress& progress) { return import_source(source, options, "points", progress); });
+  return run_work([&](Work work) { return import_source(source, options, "points", work); });
 }
 
 DagPointer from_coords(const Array<std::int32_t>& coords, std::optional<std::int64_t> resolution,
@@ -212,8 +211,7 @@ DagPointer from_coords(const Array<std::int32_t>& coords, std::optional<std::int
   for (const Vec3i v : rows_of(coords, "coords")) places.push_back(Vec3d(v));
   std::vector<Rgb8> values = colors_of(colors, places.size());
   const ArraySource source(std::move(places), std::move(values), false);
-  return run_work(
-      [&](Progress& progress) { return import_source(source, options, "coords", progress); });
+  return run_work([&](Work work) { return import_source(source, options, "coords", work); });
 }
 
 DagPointer from_dense(const Array<bool>& dense, std::optional<std::int64_t> resolution) {
@@ -231,13 +229,11 @@ DagPointer from_dense(const Array<bool>& dense, std::optional<std::int64_t> reso
   const auto least = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(side)));
   const ImportOptions options = import_options(coords_grid(resolution.value_or(least)));
   const ArraySource source(std::move(places), {}, false);
-  return run_work(
-      [&](Progress& progress) { return import_source(source, options, "dense", progress); });
+  return run_work([&](Work work) { return import_source(source, options, "dense", work); });
 }
 
 DagPointer open(const std::filesystem::path& path) {
-  return run_work(
-      [&](Progress& progress) { return std::make_shared<Dag>(DagModel(path, &progress)); });
+  return run_work([&](Work work) { return std::make_shared<Dag>(DagModel(path, work)); });
 }
 
 }  // namespace

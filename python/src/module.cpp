@@ -70,8 +70,8 @@ PYBIND11_MODULE(_voxdag, module) {
       .def(
           "save",
           [](const Dag& d, const std::filesystem::path& path, bool compact) {
-            run_work([&](Progress& progress) {
-              d.model().save(path, compact, &progress);
+            run_work([&](Work work) {
+              d.model().save(path, compact, work);
               return 0;
             });
           },

@@ -29,8 +29,8 @@ py::array_t<bool> contains(const Dag& dag, const Array<double>& points) {
   const std::vector<Vec3d> places = rows_of(points, "points");
   py::array_t<bool> result(static_cast<py::ssize_t>(places.size()));
   bool* const inside = result.mutable_data();
-  run_work([&](Progress& progress) {
-    polled_for(places.size(), 4096, &progress, "contains", [&](std::size_t i) {
+  run_work([&](Work work) {
+    polled_for(places.size(), 4096, work, "contains", [&](std::size_t i) {
       inside[i] =
           svdag_contains(dag.view(), containing_voxel(dag.grid(), places[i]), dag.grid().levels);
     });
@@ -43,8 +43,8 @@ py::dict nearest(const Dag& dag, const Array<double>& points) {
   const std::vector<Vec3d> places = rows_of(points, "points");
   std::vector<Vec3i> voxels(places.size(), Vec3i{-1, -1, -1});
   std::vector<double> distances(places.size(), HUGE_VAL);
-  run_work([&](Progress& progress) {
-    polled_for(places.size(), 256, &progress, "nearest", [&](std::size_t i) {
+  run_work([&](Work work) {
+    polled_for(places.size(), 256, work, "nearest", [&](std::size_t i) {
       const auto found = nearest_voxel(dag.view(), to_grid(dag.grid(), places[i]));
       if (!found) return;
       voxels[i] = found->voxel;
@@ -60,10 +60,10 @@ py::dict nearest(const Dag& dag, const Array<double>& points) {
 
 py::array_t<std::int32_t> coords(const Dag& dag, const std::optional<Window>& window) {
   const Box3i box = window_of(dag, window);
-  return array_of(run_work([&](Progress& progress) {
+  return array_of(run_work([&](Work work) {
     std::vector<Vec3i> voxels;
     for_each_voxel(dag.view(), box, [&](Vec3i voxel) {
-      poll_seldom(&progress, voxels.size());
+      work.poll_seldom(voxels.size());
       voxels.push_back(voxel);
     });
     return voxels;
@@ -84,11 +84,11 @@ py::array_t<bool> to_dense(const Dag& dag, const std::optional<Window>& window) 
   const Vec3<py::ssize_t> size(box.hi - box.lo);
   py::array_t<bool> dense({size.x, size.y, size.z});
   bool* const data = dense.mutable_data();
-  run_work([&](Progress& progress) {
+  run_work([&](Work work) {
     std::fill_n(data, size.x * size.y * size.z, false);
     std::uint64_t done = 0;
     for_each_voxel(dag.view(), box, [&](Vec3i voxel) {
-      poll_seldom(&progress, done++);
+      work.poll_seldom(done++);
       const Vec3<py::ssize_t> at(voxel - box.lo);
       data[(at.x * size.y + at.y) * size.z + at.z] = true;
     });
@@ -99,8 +99,8 @@ py::array_t<bool> to_dense(const Dag& dag, const std::optional<Window>& window) 
 
 py::array_t<std::int32_t> heights(const Dag& dag, const std::string& axis, bool is_low) {
   const int along = axis_of(axis);
-  const std::vector<std::int32_t> map = run_work([&](Progress& progress) {
-    return height_map(dag.view(), along, is_low ? HeightSide::kLow : HeightSide::kHigh, &progress);
+  const std::vector<std::int32_t> map = run_work([&](Work work) {
+    return height_map(dag.view(), along, is_low ? HeightSide::kLow : HeightSide::kHigh, work);
   });
   const auto side = static_cast<py::ssize_t>(dag.grid().resolution());
   py::array_t<std::int32_t> result({side, side});
@@ -114,8 +114,8 @@ py::array_t<float> distance_field(const Dag& dag, const std::optional<Window>& w
   const Box3i box = window_of(dag, window);
   const Vec3<py::ssize_t> size(box.hi - box.lo);
   const auto unit = static_cast<float>(dag.grid().voxel_size);
-  std::vector<float> distances = run_work(
-      [&](Progress& progress) { return voxdag::distance_field(dag.view(), box, &progress); });
+  std::vector<float> distances =
+      run_work([&](Work work) { return voxdag::distance_field(dag.view(), box, work); });
   for (float& distance : distances) distance *= unit;
   // The library's x runs fastest, as in Fortran's arrays.
   const py::array_t<float, py::array::f_style> field({size.x, size.y, size.z}, distances.data());
@@ -123,8 +123,7 @@ py::array_t<float> distance_field(const Dag& dag, const std::optional<Window>& w
 }
 
 py::dict surface(const Dag& dag) {
-  const VoxelSurface found =
-      run_work([&](Progress& progress) { return surface_of(dag.view(), nullptr, &progress); });
+  const VoxelSurface found = run_work([&](Work work) { return surface_of(dag.view(), work); });
   const double unit = dag.grid().voxel_size;
   py::dict result;
   result["faces"] = py::make_tuple(found.faces[0], found.faces[1], found.faces[2]);

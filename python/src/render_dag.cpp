@@ -41,8 +41,8 @@ ImageRgb8 render(const Dag& dag, int width, int height, const std::optional<Trip
   options.occlusion_samples = occlusion;
   if (colors) options.look = dag.look();
   options.with_normal = options.with_occlusion = options.with_shadow = false;
-  return run_work([&](Progress& progress) {
-    const RenderedImage image = render_image(dag.scene(), dag.grid(), options, &progress);
+  return run_work([&](Work work) {
+    const RenderedImage image = render_image(dag.scene(), dag.grid(), options, work);
     ImageRgb8 pixels(width, height);
     for (std::size_t i = 0; i < image.rgb.size(); ++i)
       for (int c = 0; c < 3; ++c)

@@ -5,16 +5,16 @@
 #include <chrono>
 #include <future>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag::python {
 
-/// Calls work(progress) on another thread without the GIL and returns its result. Ctrl-C cancels
+/// Calls body(work) on another thread without the GIL and returns its result. Ctrl-C cancels
 /// the work and raises KeyboardInterrupt. Passes exceptions of the work on.
-template <class Work>
-auto run_work(const Work& work) {
+template <class Body>
+auto run_work(const Body& body) {
   Progress progress;
-  auto result = std::async(std::launch::async, [&] { return work(progress); });
+  auto result = std::async(std::launch::async, [&] { return body(Work(&progress)); });
   bool is_interrupted = false;
   {
     const pybind11::gil_scoped_release release;

@@ -68,11 +68,10 @@ TEST(Combine, CostsAFewNodesForFullGridsOfAnySize) {
   full.leaf_blocks = {~std::uint64_t{0}};
   const Svdag voxel = brute_svdag(kMaxLevels, {{12345, 678901, 234567}});
   MemoryBudget budget(1 << 20);
-  const Svdag holed =
-      combine(full.view(), voxel.view(), SetOperation::kDifference, &budget, nullptr);
+  const Svdag holed = combine(full.view(), voxel.view(), SetOperation::kDifference, &budget);
   EXPECT_LT(holed.nodes.size(), 2u * 9 * kMaxLevels);
-  EXPECT_EQ(combine(holed.view(), voxel.view(), SetOperation::kUnion, &budget, nullptr), full);
-  EXPECT_EQ(combine(full.view(), holed.view(), SetOperation::kSymmetric, &budget, nullptr), voxel);
+  EXPECT_EQ(combine(holed.view(), voxel.view(), SetOperation::kUnion, &budget), full);
+  EXPECT_EQ(combine(full.view(), holed.view(), SetOperation::kSymmetric, &budget), voxel);
 }
 
 TEST(Combine, KeepsALimitOrIsRefused) {
@@ -90,7 +89,7 @@ TEST(Combine, EndsWhenCancelled) {
   const Svdag a = brute_svdag(4, random_voxels(4, 100, 1));
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(combine(a.view(), a.view(), SetOperation::kUnion, nullptr, &progress), Cancelled);
+  EXPECT_THROW(combine(a.view(), a.view(), SetOperation::kUnion, &progress), Cancelled);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "support/temp_dir.hpp"
 #include "support/test_rays.hpp"
 #include "support/vdag_bytes.hpp"
+#include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/file/vdag_file.hpp"
@@ -24,6 +25,21 @@ constexpr const char* kDtype =
     "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1'), "
     "('normal', '<f4', (3,)), ('color', '|u1', (3,))]";
 constexpr std::size_t kRowBytes = 33;
+constexpr std::size_t kGeometryBytes = 18;  ///< The bytes of a row before the normal.
+
+/// A row of the traced hits.
+struct Hit {
+  explicit Hit(const std::string& row)
+      : geometry(row.substr(0, kGeometryBytes)), is_hit(row[kGeometryBytes - 1] != 0) {
+    std::memcpy(&normal, row.data() + kGeometryBytes, sizeof normal);
+    std::memcpy(color.data(), row.data() + kGeometryBytes + sizeof normal, sizeof color);
+  }
+
+  std::string geometry;  ///< The bytes of t, voxel, face and hit.
+  bool is_hit;
+  Vec3f normal;
+  std::array<std::uint8_t, 3> color{};
+};
 
 class AttributesCommand : public testing::Test {
  protected:
@@ -71,24 +87,18 @@ TEST_F(AttributesCommand, HitsHaveTheColoursAndNormalsOfAnEsvoOfTheSameVoxels) {
   const std::vector<std::string> of_dag = trace(dag), of_esvo = trace(esvo);
   ASSERT_EQ(of_dag.size(), of_esvo.size());
   int hits = 0;
-  double apart = 0, cosine = 0;
+  double color_distances = 0, cosines = 0;
   for (std::size_t i = 0; i < of_dag.size(); ++i) {
-    ASSERT_EQ(of_dag[i].substr(0, 18), of_esvo[i].substr(0, 18));
-    if (of_dag[i][17] == 0) continue;
+    const Hit a(of_dag[i]), b(of_esvo[i]);
+    ASSERT_EQ(a.geometry, b.geometry);
+    if (!a.is_hit) continue;
     ++hits;
-    float a[3], b[3];
-    std::memcpy(a, of_dag[i].data() + 18, sizeof a);
-    std::memcpy(b, of_esvo[i].data() + 18, sizeof b);
-    for (std::size_t c = 0; c < 3; ++c) {
-      cosine += static_cast<double>(a[c] * b[c]);
-      apart += std::abs(static_cast<unsigned char>(of_dag[i][30 + c]) -
-                        static_cast<unsigned char>(of_esvo[i][30 + c])) /
-               3.0;
-    }
+    cosines += static_cast<double>(dot(a.normal, b.normal));
+    for (std::size_t c = 0; c < 3; ++c) color_distances += std::abs(a.color[c] - b.color[c]) / 3.0;
   }
   ASSERT_GT(hits, 300);
-  EXPECT_LT(apart / hits, 8);
-  EXPECT_GT(cosine / hits, 0.995);
+  EXPECT_LT(color_distances / hits, 8);
+  EXPECT_GT(cosines / hits, 0.995);
 }
 
 TEST_F(AttributesCommand, ACopyOfTheLookGivesTheSameHits) {
@@ -142,7 +152,8 @@ TEST_F(AttributesCommand, VerifyChecksThem) {
   const std::string dag = build("a.vdag", {"--color", "--normal"});
   EXPECT_EQ(run_voxdag({"verify", dag}).status, 0);
   std::string bytes = read_text(dag);
-  bytes[bytes.size() - 65] ^= 1;
+  const VdagChunkEntry normals = find_entry(bytes, kChunkNormals);
+  bytes[normals.offset + normals.length - 1] ^= 1;
   write_text(dag, bytes);
   EXPECT_EQ(run_voxdag({"verify", dag}).status, 1);
 }
@@ -259,12 +270,13 @@ TEST_F(AttributesCommand, VerifyComparesThemWithTheMesh) {
   EXPECT_EQ(result.status, 0) << result.err;
   for (const char* text : {"colours         passed", "normals         passed", "largest error 0.0"})
     EXPECT_NE(result.out.find(text), std::string::npos) << text << "\n" << result.out;
-  // A red channel changes in a block of colours; all checksums are right.
+  // The red of the first block of colours changes; all checksums are right. Its bits follow the 9
+  // bits of the block's header at the start of the chunk's words.
   std::string bytes = read_text(dag);
-  const auto colors = peek<VdagChunkEntry>(bytes, entry_offset(3));
-  ASSERT_EQ(colors.id, kChunkColors);
-  const auto groups = (peek<std::uint64_t>(bytes, colors.offset + 8) + 256 * 64 - 1) / (256 * 64);
-  bytes[colors.offset + 64 + 8 * groups + 1] ^= 0x30;
+  const std::uint64_t chunk = find_entry(bytes, kChunkColors).offset;
+  const CellPagesView pages{.values = peek<ValuePagesHeader>(bytes, chunk).values};
+  const std::uint64_t words = chunk + sizeof(ValuePagesHeader) + 8 * pages.group_count();
+  bytes[words + 1] ^= 0x30;
   repair_checksums(bytes);
   write_text(dag, bytes);
   EXPECT_EQ(run_voxdag({"verify", dag}).status, 0);

@@ -22,7 +22,7 @@ class PartsJobFailures : public testing::Test {
   void SetUp() override {
     if (ranks().count() > 1) GTEST_SKIP() << "for one process";
     folder_.emplace(ranks());
-    write_ply(*folder_ / "scene.ply", scene_.mesh, nullptr);
+    write_ply(*folder_ / "scene.ply", scene_.mesh);
     build_plainly(*folder_ / "scene.ply", scene_.grid, *folder_ / "plain.vdag");
     plain_ = read_text(*folder_ / "plain.vdag");
   }
@@ -38,7 +38,7 @@ class PartsJobFailures : public testing::Test {
     MemoryBudget unlimited;
     try {
       report_ =
-          build_in_parts(job_of(*folder_, scene_, 5), kProgram, ranks(), unlimited, &progress);
+          build_in_parts(job_of(*folder_, scene_, 5), kProgram, ranks(), {&unlimited, &progress});
       return true;
     } catch (const Cancelled&) {
       return false;
@@ -147,7 +147,7 @@ TEST_F(PartsJobFailures, AFullDiskEndsTheJobInAnyStepAndTheNextRunGoesOn) {
 
 TEST_F(PartsJobFailures, AJobGoesOnWithOtherMemory) {
   const Scene scene{"courtyard", make_scene("courtyard", {.size = 0.5}), levels(7)};
-  write_ply(*folder_ / "scene.ply", scene.mesh, nullptr);
+  write_ply(*folder_ / "scene.ply", scene.mesh);
   build_plainly(*folder_ / "scene.ply", scene.grid, *folder_ / "plain.vdag");
   const PartsJob job = job_of(*folder_, scene, 5);
   // Segments of a smaller budget have fewer triangles. Cancels at each report in turn.
@@ -159,10 +159,10 @@ TEST_F(PartsJobFailures, AJobGoesOnWithOtherMemory) {
     });
     to_cancel = &progress;
     MemoryBudget little(std::uint64_t{12} << 20), more(std::uint64_t{64} << 20);
-    EXPECT_THROW(build_in_parts(job, kProgram, ranks(), little, &progress), Cancelled);
+    EXPECT_THROW(build_in_parts(job, kProgram, ranks(), {&little, &progress}), Cancelled);
     // A job without facts about the mesh, but with segments.
     if (reports % 2 == 0) std::filesystem::remove(work() / "triangles" / "mesh");
-    build_in_parts(job, kProgram, ranks(), more, nullptr);
+    build_in_parts(job, kProgram, ranks(), &more);
     EXPECT_EQ(output(), read_text(*folder_ / "plain.vdag")) << reports;
   }
 }
@@ -172,7 +172,7 @@ TEST_F(PartsJobFailures, AFolderOfAnotherJobIsRefused) {
   MemoryBudget unlimited;
   PartsJob job = job_of(*folder_, scene_, 5);
   const auto error = [&] {
-    return error_of([&] { build_in_parts(job, kProgram, ranks(), unlimited, nullptr); });
+    return error_of([&] { build_in_parts(job, kProgram, ranks(), &unlimited); });
   };
   job.grid.levels = 7;
   EXPECT_EQ(error(), work().string() +
@@ -183,7 +183,7 @@ TEST_F(PartsJobFailures, AFolderOfAnotherJobIsRefused) {
   job = job_of(*folder_, scene_, 5);
   Mesh moved = scene_.mesh;
   moved.vertices[0].x += 1;
-  write_ply(*folder_ / "scene.ply", moved, nullptr);
+  write_ply(*folder_ / "scene.ply", moved);
   EXPECT_NE(error().find("another content of the mesh"), std::string::npos) << error();
 }
 
@@ -209,9 +209,9 @@ TEST_F(PartsJobFailures, AVertexThatIsNotFiniteIsTheErrorOfReadMesh) {
   job.chunk_bytes = 64;
   MemoryBudget unlimited;
   write_text(job.mesh, text);  // an unused vertex may be anything
-  build_in_parts(job, kProgram, ranks(), unlimited, nullptr);
+  build_in_parts(job, kProgram, ranks(), &unlimited);
   write_text(job.mesh, text + "f 2 3 4\n");
-  EXPECT_EQ(error_of([&] { build_in_parts(job, kProgram, ranks(), unlimited, nullptr); }),
+  EXPECT_EQ(error_of([&] { build_in_parts(job, kProgram, ranks(), &unlimited); }),
             error_of([&] { read_mesh(job.mesh); }));
 }
 

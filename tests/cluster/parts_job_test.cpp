@@ -75,7 +75,7 @@ TEST_P(PartsJobScenes, GiveTheFileOfAPlainBuild) {
   const Scene& scene = this->scene(GetParam());
   const SharedFolder folder(ranks());
   if (ranks().rank() == 0) {
-    write_ply(folder / "scene.ply", scene.mesh, nullptr);
+    write_ply(folder / "scene.ply", scene.mesh);
     build_plainly(folder / "scene.ply", scene.grid, folder / "plain.vdag");
   }
   ranks().barrier();
@@ -85,7 +85,7 @@ TEST_P(PartsJobScenes, GiveTheFileOfAPlainBuild) {
   for (const std::uint64_t parts : counts) {
     MemoryBudget unlimited;
     const PartsReport report =
-        build_in_parts(job_of(folder, scene, parts), kProgram, ranks(), unlimited, nullptr);
+        build_in_parts(job_of(folder, scene, parts), kProgram, ranks(), &unlimited);
     EXPECT_EQ(report.parts, report.built);
     if (ranks().rank() != 0) continue;
     EXPECT_EQ(read_text(folder / "parts.vdag"), read_text(folder / "plain.vdag")) << parts;
@@ -128,7 +128,7 @@ TEST_P(PartsJobFiles, GiveTheFileOfAPlainBuild) {
   // In all memory, and in little.
   for (const std::uint64_t limit : {std::uint64_t{1} << 40, std::uint64_t{24} << 20}) {
     MemoryBudget budget(limit);
-    build_in_parts(job, kProgram, ranks(), budget, nullptr);
+    build_in_parts(job, kProgram, ranks(), &budget);
     if (ranks().rank() != 0) continue;
     EXPECT_EQ(read_text(folder / "parts.vdag"), read_text(folder / "plain.vdag"));
   }
@@ -146,13 +146,13 @@ TEST(PartsJob, ADagOfTooManyWordsGetsLongPointers) {
   const Scene scene{"courtyard", make_scene("courtyard", {.size = 0.1}), levels(8)};
   PartsJob job = job_of(folder, scene, 5);
   if (ranks().rank() == 0) {
-    write_ply(job.mesh, scene.mesh, nullptr);
+    write_ply(job.mesh, scene.mesh);
     build_plainly(job.mesh, scene.grid, folder / "plain.vdag");
   }
   ranks().barrier();
   MemoryBudget unlimited;
   job.most_plain_words = 1000;  // instead of some 2^32
-  build_in_parts(job, kProgram, ranks(), unlimited, nullptr);
+  build_in_parts(job, kProgram, ranks(), &unlimited);
   if (ranks().rank() != 0) return;
   ASSERT_EQ(vdag_kind(job.output), VdagKind::kLong);
   EXPECT_TRUE(verify_vdag(job.output).passed());
@@ -167,7 +167,7 @@ TEST(PartsJob, SplitsPartsThatDoNotFitIntoMemory) {
   const SharedFolder folder(ranks());
   const Scene scene{"courtyard", make_scene("courtyard", {.size = 0.2}), levels(10)};
   if (ranks().rank() == 0) {
-    write_ply(folder / "scene.ply", scene.mesh, nullptr);
+    write_ply(folder / "scene.ply", scene.mesh);
     build_plainly(folder / "scene.ply", scene.grid, folder / "plain.vdag");
   }
   ranks().barrier();
@@ -175,8 +175,7 @@ TEST(PartsJob, SplitsPartsThatDoNotFitIntoMemory) {
   // Several ranks also hold messages.
   const std::uint64_t limit = std::uint64_t{ranks().count() == 1 ? 12u : 32u} << 20;
   MemoryBudget little(limit);
-  const PartsReport report =
-      build_in_parts(job_of(folder, scene, 1), kProgram, ranks(), little, nullptr);
+  const PartsReport report = build_in_parts(job_of(folder, scene, 1), kProgram, ranks(), &little);
   EXPECT_EQ(report.parts, 1u);
   EXPECT_LE(little.peak(), limit);
   if (ranks().count() == 1) {

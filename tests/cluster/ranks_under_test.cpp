@@ -23,7 +23,7 @@ const testing::Environment* const kJob = testing::AddGlobalTestEnvironment(new J
 }  // namespace
 
 Ranks& ranks() {
-  if (joined() == nullptr) joined() = join_ranks(nullptr, {.message_bytes = kMessageBytes});
+  if (joined() == nullptr) joined() = join_ranks({}, {.message_bytes = kMessageBytes});
   return *joined();
 }
 

@@ -33,7 +33,7 @@ TEST(WorkFile, IsReadAsItWasWritten) {
   const TempDir dir;
   for (const std::size_t bytes : {0, 1, 99, 100, 101, 5000}) {
     const std::string text = write(dir / "file", bytes);
-    const auto file = WorkFile::open(dir / "file", kKey, nullptr);
+    const auto file = WorkFile::open(dir / "file", kKey, {});
     ASSERT_TRUE(file);
     EXPECT_EQ(text_of(*file), text);
     file->release(bytes);
@@ -44,21 +44,21 @@ TEST(WorkFile, IsReadAsItWasWritten) {
 
 TEST(WorkFile, OpensNoDamagedFile) {
   const TempDir dir;
-  EXPECT_FALSE(WorkFile::open(dir / "none", kKey, nullptr));
+  EXPECT_FALSE(WorkFile::open(dir / "none", kKey, {}));
   write(dir / "file", 300);
-  EXPECT_FALSE(WorkFile::open(dir / "file", kKey + 1, nullptr)) << "of another job";
+  EXPECT_FALSE(WorkFile::open(dir / "file", kKey + 1, {})) << "of another job";
   const std::string whole = read_text(dir / "file");
   for (std::size_t size = 0; size < whole.size(); size += 7) {
     write_text(dir / "file", whole.substr(0, size));
-    EXPECT_FALSE(WorkFile::open(dir / "file", kKey, nullptr)) << size;
+    EXPECT_FALSE(WorkFile::open(dir / "file", kKey, {})) << size;
   }
   write_text(dir / "file", whole + "x");
-  EXPECT_FALSE(WorkFile::open(dir / "file", kKey, nullptr));
+  EXPECT_FALSE(WorkFile::open(dir / "file", kKey, {}));
   for (std::size_t at = 0; at < whole.size(); at += at == 31 ? 33 : 1) {  // not the zeros
     std::string damaged = whole;
     damaged[at] ^= 4;
     write_text(dir / "file", damaged);
-    EXPECT_FALSE(WorkFile::open(dir / "file", kKey, nullptr)) << at;
+    EXPECT_FALSE(WorkFile::open(dir / "file", kKey, {})) << at;
   }
 }
 

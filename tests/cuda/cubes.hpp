@@ -24,7 +24,7 @@ inline RenderedImage render_cubes(const EsvoView& esvo, const Grid& grid,
   const EsvoNodes nodes(esvo);
   const TileRenderer renderer(nodes, ScalarCaster(nodes), plan.setup(), options.beams, source);
   plan.image().rays =
-      renderer.render(make_tiles(options.width, options.height, options.tile_size), nullptr);
+      renderer.render(make_tiles(options.width, options.height, options.tile_size), {});
   if (options.with_steps) renderer.count();
   if (source == nullptr) filter_picture(plan.image(), options.filter);
   return plan.finish();

@@ -31,8 +31,8 @@ class CudaStreaming : public OnCudaDevice, protected WavyFile {
   }
   RenderedImage render(DeviceStream& stream,
                        const std::function<void(const RenderedImage&)>& on_pass = {},
-                       Progress* progress = nullptr) const {
-    return render_streamed(stream, grid, options, on_pass, progress);
+                       Work work = {}) const {
+    return render_streamed(stream, grid, options, on_pass, work);
   }
   std::uint64_t needed() const {
     StreamBlocks blocks(path(), bytes);

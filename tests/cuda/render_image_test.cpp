@@ -118,9 +118,8 @@ TEST_F(CudaRender, TakesPointsFromASource) {
   options.samples_per_pixel = 2;
   options.shadow_samples = 2 * kShadowRaysWithBeams;
   const PlaneSource source;
-  expect_like(
-      render_image(DeviceScene(device_, dag.view()), picture_grid(), options, nullptr, &source),
-      render_image(dag.view(), picture_grid(), options, nullptr, &source));
+  expect_like(render_image(DeviceScene(device_, dag.view()), picture_grid(), options, {}, &source),
+              render_image(dag.view(), picture_grid(), options, {}, &source));
 }
 
 /// A source that fails at the second sample of a pixel.
@@ -144,7 +143,7 @@ TEST_F(CudaRender, WorksAgainAfterASourceFailedWhileTheDeviceRendered) {
   options.samples_per_pixel = 2;
   options.shadow_samples = 2 * kShadowRaysWithBeams;
   const FailingSource failing;
-  EXPECT_THROW(render_image(scene, picture_grid(), options, nullptr, &failing), Error);
+  EXPECT_THROW(render_image(scene, picture_grid(), options, {}, &failing), Error);
   expect_like(render_image(scene, picture_grid(), options),
               render_image(dag.view(), picture_grid(), options));
 }

@@ -122,7 +122,7 @@ TEST(RenderPixel, EqualsTheTilesOfTheCpuForPointsFromASource) {
   const PlaneSource source;
   const ScalarCaster caster(SvdagNodes(dag.view()));
   expect_equal(render_as_device(dag.view(), SvdagNodes(dag.view()), caster, options, &source),
-               render_image(dag.view(), picture_grid(), options, nullptr, &source));
+               render_image(dag.view(), picture_grid(), options, {}, &source));
 }
 
 TEST(RenderPixel, EqualsTheTilesOfTheCpuForAnEsvo) {

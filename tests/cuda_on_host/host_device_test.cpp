@@ -106,11 +106,11 @@ RenderOptions small_picture() {
 
 void expect_picture(const DeviceScene& scene, const ViewSource* source) {
   const RenderOptions options = small_picture();
-  const RenderedImage image = render_image(scene, picture_grid(), options, nullptr, source);
+  const RenderedImage image = render_image(scene, picture_grid(), options, {}, source);
   const RenderedImage like =
       scene.view().layout == DeviceLayout::kCubes
           ? render_cubes(*scene.host().esvo(), picture_grid(), options, source)
-          : render_image(scene.host(), picture_grid(), options, nullptr, source);
+          : render_image(scene.host(), picture_grid(), options, {}, source);
   EXPECT_EQ(image.radiance, like.radiance);
   EXPECT_EQ(image.depth, like.depth);
   EXPECT_EQ(image.steps, like.steps);

@@ -25,7 +25,7 @@ class MeshPrimary : public testing::TestWithParam<int> {
     const Grid grid = fit_grid(mesh, GetParam());
     const Svdag dag = build_svdag(mesh, grid).dag;
     const MeshViewSource source(mesh);
-    return render_image(dag.view(), grid, options, nullptr, &source);
+    return render_image(dag.view(), grid, options, {}, &source);
   }
 };
 

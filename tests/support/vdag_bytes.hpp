@@ -67,6 +67,14 @@ inline std::size_t entry_offset(std::size_t index) {
   return sizeof(VdagHeader) + index * sizeof(VdagChunkEntry);
 }
 
+/// Returns the directory's entry of a chunk, which the file must have.
+inline VdagChunkEntry find_entry(const std::string& bytes, std::uint32_t id) {
+  for (std::size_t i = 0;; ++i) {
+    const auto entry = peek<VdagChunkEntry>(bytes, entry_offset(i));
+    if (entry.id == id) return entry;
+  }
+}
+
 /// Corrects every checksum that can be corrected, so that tests reach the checks after them.
 inline void repair_checksums(std::string& bytes) {
   if (bytes.size() < sizeof(VdagHeader)) return;

@@ -58,7 +58,7 @@ TEST(ExportSite, TheFolderHasThePageAndTheScene) {
   const TempDir dir;
   const PatternScene scene(3'000'000);
   for (const char* name : {"site", "site2/"}) {
-    std::uint64_t bytes = export_site(dir / name, scene, nullptr);
+    std::uint64_t bytes = export_site(dir / name, scene);
     EXPECT_EQ(read_text(dir / name / "scene.vdag"), scene.text(0, scene.size() - 1));
     bytes -= scene.size();
     for (const PageFile& file : page_files()) {
@@ -73,8 +73,8 @@ TEST(ExportSite, TheFolderHasThePageAndTheScene) {
 TEST(ExportSite, AnOldPageIsReplaced) {
   const TempDir dir;
   fs::create_directory(dir / "site");
-  export_site(dir / "site", PatternScene(1000), nullptr);
-  export_site(dir / "site", PatternScene(2000), nullptr);
+  export_site(dir / "site", PatternScene(1000));
+  export_site(dir / "site", PatternScene(2000));
   EXPECT_EQ(fs::file_size(dir / "site/scene.vdag"), 2000u);
   EXPECT_EQ(dir.count(), 1);
 }
@@ -85,30 +85,26 @@ TEST(ExportSite, AFolderWithOtherFilesIsLeftAlone) {
     fs::create_directories((dir / other).parent_path());
     write_text(dir / other, "mine");
     EXPECT_NE(error_of([&] {
-                export_site(dir.path(), PatternScene(1000), nullptr);
+                export_site(dir.path(), PatternScene(1000));
               }).find("which is no file of the page"),
               std::string::npos);
     EXPECT_EQ(read_text(dir / other), "mine");
     fs::remove_all(dir / other);
   }
   write_text(dir / "file", "mine");
-  EXPECT_NE(error_of([&] {
-              export_site(dir / "file", PatternScene(1000), nullptr);
-            }).find("is no folder"),
+  EXPECT_NE(error_of([&] { export_site(dir / "file", PatternScene(1000)); }).find("is no folder"),
             std::string::npos);
 }
 
 TEST(ExportSite, AFailureLeavesNothing) {
   const TempDir dir;
-  EXPECT_NE(error_of([&] { export_site(dir / "site", FailingScene(), nullptr); }), "no error");
-  EXPECT_NE(error_of([&] { export_single_page(dir / "a.html", FailingScene(), nullptr); }),
-            "no error");
-  EXPECT_NE(error_of([&] { export_site(dir / "no/site", PatternScene(1000), nullptr); }),
-            "no error");
+  EXPECT_NE(error_of([&] { export_site(dir / "site", FailingScene()); }), "no error");
+  EXPECT_NE(error_of([&] { export_single_page(dir / "a.html", FailingScene()); }), "no error");
+  EXPECT_NE(error_of([&] { export_site(dir / "no/site", PatternScene(1000)); }), "no error");
   EXPECT_EQ(dir.count(), 0);
   // An existing page stays as it was.
-  export_site(dir / "site", PatternScene(1000), nullptr);
-  EXPECT_NE(error_of([&] { export_site(dir / "site", FailingScene(), nullptr); }), "no error");
+  export_site(dir / "site", PatternScene(1000));
+  EXPECT_NE(error_of([&] { export_site(dir / "site", FailingScene()); }), "no error");
   EXPECT_EQ(fs::file_size(dir / "site/scene.vdag"), 1000u);
   EXPECT_EQ(dir.count(), 1);
 }
@@ -126,7 +122,7 @@ TEST(ExportSinglePage, HoldsTheScene) {
   const TempDir dir;
   for (const std::uint64_t size : {64, 1000, 5'000'000}) {
     const PatternScene scene(size);
-    const std::uint64_t bytes = export_single_page(dir / "a.html", scene, nullptr);
+    const std::uint64_t bytes = export_single_page(dir / "a.html", scene);
     const std::string page = read_text(dir / "a.html");
     EXPECT_EQ(page.size(), bytes);
     EXPECT_EQ(unpacked(scene_text(page)), scene.text(0, size - 1));
@@ -135,8 +131,8 @@ TEST(ExportSinglePage, HoldsTheScene) {
 
 TEST(ExportSinglePage, EqualScenesMakeEqualFiles) {
   const TempDir dir;
-  export_single_page(dir / "a.html", PatternScene(100'000), nullptr);
-  export_single_page(dir / "b.html", PatternScene(100'000), nullptr);
+  export_single_page(dir / "a.html", PatternScene(100'000));
+  export_single_page(dir / "b.html", PatternScene(100'000));
   EXPECT_EQ(read_text(dir / "a.html"), read_text(dir / "b.html"));
 }
 

@@ -11,7 +11,6 @@
 #include "viewer/gzip/gzip.hpp"
 #include "viewer/server/entity_tags.hpp"
 #include "viewer/server/multipart_body.hpp"
-#include "viewer/server/scene_ranges.hpp"
 #include "viewer/server/server_address.hpp"
 
 namespace voxdag {
@@ -28,16 +27,15 @@ constexpr char kContentSecurityPolicy[] =
     "style-src 'self'; img-src 'self' data: blob:; font-src 'self'; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'self'";
 
-/// The ranges of the request that the calling thread answers.
+/// The parts of the scene that a request asks for.
 struct PlannedRanges {
-  bool are_wrong = false;         // No range can be served.
-  std::vector<ByteRange> ranges;  // As resolve_ranges() makes them; none: the whole scene.
+  bool are_wrong = false;         ///< No range can be served.
+  std::vector<ByteRange> ranges;  ///< As resolve_ranges() makes them; none: the whole scene.
 };
 
-PlannedRanges& planned() {
-  static thread_local PlannedRanges ranges;
-  return ranges;
-}
+/// Passes the ranges of a request from plan() to answer(). The HTTP library calls both on the
+/// thread that serves the request, and has no place for them in the request itself.
+thread_local PlannedRanges planned_ranges;
 
 bool is_for_scene(const httplib::Request& request) { return request.path == kScenePath; }
 
@@ -116,15 +114,15 @@ Answers::Answers(const SceneBytes& scene, const std::string& local_host)
 }
 
 void Answers::plan(httplib::Request& request) const {
-  planned() = {};
+  planned_ranges = {};
   std::vector<ByteRange> ranges;
   std::swap(ranges, request.ranges);
   const std::string if_range = request.get_header_value("If-Range");
   if (ranges.empty() || request.method != "GET" || !is_for_scene(request) ||
       (!if_range.empty() && if_range != scene_tag_))
     return;
-  planned().are_wrong = !resolve_ranges(ranges, scene_.size());
-  planned().ranges = std::move(ranges);
+  planned_ranges.are_wrong = !resolve_ranges(ranges, scene_.size());
+  planned_ranges.ranges = std::move(ranges);
 }
 
 bool Answers::is_allowed_host(const httplib::Request& request) const {
@@ -171,12 +169,12 @@ void Answers::answer_scene(const httplib::Request& request, httplib::Response& r
                   "the scene's file has changed since the server opened it: start it again");
   response.set_header("Accept-Ranges", "bytes");
   if (answer_known(request, response, scene_tag_)) return;
-  if (planned().are_wrong) {
+  if (planned_ranges.are_wrong) {
     response.set_header("Content-Range", fmt::format("bytes */{}", scene_.size()));
     response.status = 416;
     return;
   }
-  const std::vector<ByteRange>& ranges = planned().ranges;
+  const std::vector<ByteRange>& ranges = planned_ranges.ranges;
   if (!ranges.empty()) response.status = 206;
   if (ranges.size() > 1) return answer_parts(ranges, response);
   std::uint64_t begin = 0, size = scene_.size();

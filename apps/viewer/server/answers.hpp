@@ -9,7 +9,7 @@
 
 #include "viewer/embedded/page_files.hpp"
 #include "viewer/scene/scene_bytes.hpp"
-#include "viewer/server/scene_ranges.hpp"
+#include "viewer/server/multipart_body.hpp"
 
 namespace voxdag {
 

@@ -1,14 +1,25 @@
 #pragma once
 /// The body of an answer with several ranges of a scene: multipart/byteranges, RFC 9110, section
 /// 14.6. The HTTP library has one, too, but writes a wrong size of the whole.
+#include <sys/types.h>
+
+#include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "viewer/scene/scene_bytes.hpp"
-#include "viewer/server/scene_ranges.hpp"
 
 namespace voxdag {
+
+/// First and last byte. In a request of the HTTP library, -1 is a byte that the client left out.
+using ByteRange = std::pair<ssize_t, ssize_t>;
+
+/// Makes the ranges explicit for a content of `size` bytes: 0 <= first <= last < size. Removes the
+/// ranges behind its end. Returns false if no range is left, or if all together have more than
+/// `size` bytes.
+bool resolve_ranges(std::vector<ByteRange>& ranges, std::uint64_t size);
 
 class MultipartBody {
  public:

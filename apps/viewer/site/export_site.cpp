@@ -1,10 +1,14 @@
 #include "viewer/site/export_site.hpp"
 
 #include <set>
+#include <string_view>
 #include <system_error>
 
 #include "viewer/embedded/page_files.hpp"
+#include "viewer/gzip/gzip.hpp"
+#include "viewer/site/base64.hpp"
 #include "viewer/site/scene_pieces.hpp"
+#include "viewer/site/single_page.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/io/temporary_folder.hpp"
@@ -37,15 +41,15 @@ void check_replaceable(const fs::path& folder) {
   if (error) fail(folder, "cannot read", error);
 }
 
-void write_scene(const fs::path& path, const SceneBytes& scene, Progress* progress) {
+void write_scene(const fs::path& path, const SceneBytes& scene, Work work) {
   AtomicFile file(path);
-  for_each_piece(scene, progress, [&](std::span<const std::byte> piece) { file.write(piece); });
+  for_each_piece(scene, work, [&](std::span<const std::byte> piece) { file.write(piece); });
   file.commit();
 }
 
 }  // namespace
 
-std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Progress* progress) {
+std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Work work) {
   const fs::path target = folder.has_filename() ? folder : folder.parent_path();
   std::error_code error;
   const fs::file_status status = fs::symlink_status(target, error);
@@ -62,8 +66,25 @@ std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Progr
     write_whole_file(path, file.bytes);
     bytes += file.bytes.size();
   }
-  write_scene(site.path() / kSceneName, scene, progress);
+  write_scene(site.path() / kSceneName, scene, work);
   site.take_name();
+  return bytes;
+}
+
+std::uint64_t export_single_page(const std::filesystem::path& path, const SceneBytes& scene,
+                                 Work work) {
+  const SinglePage page = make_single_page(page_files());
+  AtomicFile file(path);
+  file.write(page.before);
+  Gzip gzip;
+  Base64 encoder;
+  const auto write = [&](std::string_view compressed) { file.write(encoder.add(compressed)); };
+  for_each_piece(scene, work, [&](auto piece) { gzip.add(piece, write); });
+  gzip.finish(write);
+  file.write(encoder.finish());
+  file.write(page.after);
+  const std::uint64_t bytes = file.position();
+  file.commit();
   return bytes;
 }
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "viewer/scene/scene_bytes.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -13,14 +13,13 @@ inline constexpr std::uint64_t kHandyPageBytes = std::uint64_t{64} << 20;
 
 /// Writes a folder with the page's files and "scene.vdag", completely or not at all: it fills a
 /// temporary folder, then renames it. Replaces an existing folder if that has no files but these.
-/// Returns the bytes of all files. Throws Error, and Cancelled; `progress` may be null.
+/// Returns the bytes of all files. Throws Error, and Cancelled.
 std::uint64_t export_site(const std::filesystem::path& folder, const SceneBytes& scene,
-                          Progress* progress);
+                          Work work = {});
 
 /// Writes the page of make_single_page() with the scene, completely or not at all. The bytes of the
-/// file depend on the scene's bytes alone. Returns its size. Throws Error, and Cancelled;
-/// `progress` may be null.
+/// file depend on the scene's bytes alone. Returns its size. Throws Error, and Cancelled.
 std::uint64_t export_single_page(const std::filesystem::path& file, const SceneBytes& scene,
-                                 Progress* progress);
+                                 Work work = {});
 
 }  // namespace voxdag

@@ -67,16 +67,15 @@ void check_materials(const AttributeArguments& arguments, const Mesh& mesh,
 
 DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
                                       const MeshWithAppearance& source, const SvdagView& dag,
-                                      const SurfaceShading* shading, MemoryBudget& memory,
-                                      VdagMetadata& metadata, Progress& progress) {
+                                      const SurfaceShading* shading, VdagMetadata& metadata,
+                                      Work work) {
   AttributeOptions options = arguments.options;
-  options.memory = &memory;
   options.finest_level = arguments.levels
                              ? *arguments.levels
                              : finest_level_within(metadata.counts, options,
-                                                   std::min(kAttributeBudget, memory.left()));
+                                                   std::min(kAttributeBudget, work.memory->left()));
   DagAttributes attributes =
-      build_attributes(source.mesh, metadata.grid, dag, shading, options, &progress);
+      build_attributes(source.mesh, metadata.grid, dag, shading, options, work);
   AttributesMetadata& stored = metadata.attributes;
   stored.resolution = std::int64_t{1} << options.finest_level;
   if (options.colors) stored.colors = {options.color_bound, attributes.color_errors.squared};

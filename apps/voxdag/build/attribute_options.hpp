@@ -32,11 +32,12 @@ void check_materials(const AttributeArguments& arguments, const Mesh& mesh,
                      const std::string& file);
 
 /// Builds the attributes of a DAG at the resolution that the arguments ask for, which must pass
-/// check_levels(). `shading` may be null if the arguments do not need it. Uses metadata.grid and
-/// metadata.counts, and sets metadata.attributes. Throws what build_attributes() throws.
+/// check_levels(). `shading` may be null if the arguments do not need it; `work` has a budget. Uses
+/// metadata.grid and metadata.counts, and sets metadata.attributes. Throws what build_attributes()
+/// throws.
 DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
                                       const MeshWithAppearance& source, const SvdagView& dag,
-                                      const SurfaceShading* shading, MemoryBudget& memory,
-                                      VdagMetadata& metadata, Progress& progress);
+                                      const SurfaceShading* shading, VdagMetadata& metadata,
+                                      Work work);
 
 }  // namespace voxdag::cli

@@ -59,22 +59,22 @@ void add_bake_settings(const BakeArguments& arguments, const Grid& grid,
 
 Occluders::Occluders(const Mesh& mesh, const Grid& grid, const BakeArguments& arguments,
                      const EsvoOptions& build, const SurfaceShading& shading,
-                     const DisplacedTriangles* displaced, Progress& progress)
-    : grid_(grid), progress_(progress) {
+                     const DisplacedTriangles* displaced, Work work)
+    : grid_(grid), work_(work) {
   const Grid own = coarser(grid, arguments.levels_in(grid));
   EsvoOptions options = build;
   options.settings.attributes = false;
   options.stage = "occluders";
-  EsvoMemory memory(options.memory);
-  const EsvoResult result = build_esvo(mesh, own, options, &shading, displaced, memory, &progress);
+  EsvoMemory memory(work.memory);
+  const EsvoResult result = build_esvo(mesh, own, options, &shading, displaced, memory, work);
   esvo_ = {memory.take(), result.root, own.levels};
-  memory_ = {options.memory, esvo_.slots.capacity() * sizeof(std::uint64_t)};
+  memory_ = {work.memory, esvo_.slots.capacity() * sizeof(std::uint64_t)};
   openness_.emplace(esvo_.view(), own, arguments.rays, arguments.distance_in(grid));
 }
 
 SurfaceLight Occluders::light() const {
   return [this](const SurfacePlace& place) {
-    progress_.throw_if_cancelled();  // A task may cast millions of rays.
+    work_.poll();  // A task may cast millions of rays.
     return (*openness_)(grid_.to_world(place.point), place.normal, place.face);
   };
 }

@@ -41,11 +41,10 @@ void add_bake_settings(const BakeArguments& arguments, const Grid& grid,
 /// and displacement, without colours.
 class Occluders {
  public:
-  /// Builds the octree, and counts its memory in options.memory. Refers to `progress`. Throws like
-  /// build_esvo().
+  /// Builds the octree, and counts its memory as long as it lives. Throws like build_esvo().
   Occluders(const Mesh& mesh, const Grid& grid, const BakeArguments& arguments,
             const EsvoOptions& options, const SurfaceShading& shading,
-            const DisplacedTriangles* displaced, Progress& progress);
+            const DisplacedTriangles* displaced, Work work);
   Occluders(const Occluders&) = delete;
   Occluders& operator=(const Occluders&) = delete;
 
@@ -55,7 +54,7 @@ class Occluders {
 
  private:
   Grid grid_;
-  Progress& progress_;
+  Work work_;
   MemoryReservation memory_;
   Esvo esvo_;
   std::optional<SurfaceOpenness> openness_;

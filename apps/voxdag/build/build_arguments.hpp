@@ -39,9 +39,6 @@ struct BuildArguments {
   EsvoArguments esvo;
 };
 
-/// Returns the settings that shape the voxels, for the metadata of the output.
-std::map<std::string, std::string> build_settings(const BuildArguments& arguments);
-
 /// Builds a DAG from the mesh file session.subject, writes it, and prints the summary.
 void build_dag_file(const BuildArguments& arguments, Session& session);
 
@@ -51,5 +48,13 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session);
 /// Builds an ESVO from the mesh file session.subject with its textures, writes it, and prints the
 /// summary.
 void build_esvo_file(const BuildArguments& arguments, Session& session);
+
+/// Returns the settings that shape the voxels, for the metadata of the output.
+inline std::map<std::string, std::string> build_settings(const BuildArguments& arguments) {
+  std::map<std::string, std::string> settings = settings_of(arguments.grid);
+  if (arguments.solid)
+    add_solid_settings({*arguments.solid, arguments.winding_threshold}, settings);
+  return settings;
+}
 
 }  // namespace voxdag::cli

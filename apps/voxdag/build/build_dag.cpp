@@ -74,10 +74,10 @@ MeshWithAppearance read_source(const BuildArguments& arguments, const MeshAccess
 
 /// Returns the DAG with the voxels inside. Errors name the mesh and what else could be done.
 Svdag fill(const SvdagView& cover, const Mesh& mesh, const Grid& grid,
-           const BuildArguments& arguments, MemoryBudget& memory, Session& session) {
+           const BuildArguments& arguments, Work work, Session& session) {
   const SolidOptions options{*arguments.solid, arguments.winding_threshold};
   try {
-    return fill_solid(cover, mesh, grid, options, &memory, &session.progress);
+    return fill_solid(cover, mesh, grid, options, work);
   } catch (const Cancelled&) {
     throw;
   } catch (const OverMemory&) {
@@ -94,11 +94,11 @@ Svdag fill(const SvdagView& cover, const Mesh& mesh, const Grid& grid,
 
 void build_dag_file(const BuildArguments& arguments, Session& session) {
   check_writable(arguments.output);
-  Progress& progress = session.progress;
   Stopwatch watch;
   StageSeconds seconds;
 
   MemoryBudget memory = command_budget(arguments.memory_limit);
+  const Work work(&memory, &session.progress);
   MeshAccess access = arguments.access;
   access.memory = &memory;
   MeshWithAppearance source = read_source(arguments, access, session);
@@ -113,8 +113,7 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
                             mesh.vertices.size(), mesh.triangles.size()};
   report.metadata.program = written_by();
   report.metadata.build = build_settings(arguments);
-  BuildResult result =
-      build_svdag(mesh, report.metadata.grid, {arguments.method, &memory}, &progress);
+  BuildResult result = build_svdag(mesh, report.metadata.grid, arguments.method, work);
   const bool has_attributes = arguments.attributes.is_wanted();
   const auto free_source = [&] {
     memory.release(memory_bytes(mesh) + memory_bytes(source.appearance));
@@ -122,19 +121,19 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   };
   seconds.build = watch.lap();
   if (arguments.solid) {
-    result.dag = fill(result.dag.view(), mesh, report.metadata.grid, arguments, memory, session);
+    result.dag = fill(result.dag.view(), mesh, report.metadata.grid, arguments, work, session);
     result.memory = MemoryReservation(&memory, result.dag.view().bytes());
     seconds.solid = watch.lap();
   }
   if (!has_attributes) free_source();
 
-  progress.throw_if_cancelled();
+  work.poll();
   const SvdagView view = result.dag.view();
   MemoryReservation counting(&memory, view.bytes());
   report.metadata.counts = count_svdag(view);
   counting.resize(0);
   report = report_of(view, report.metadata, 0);
-  progress.throw_if_cancelled();
+  work.poll();
   DagAttributes attributes;
   if (has_attributes) {
     watch.lap();
@@ -142,19 +141,18 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
     std::vector<std::string> warnings;
     std::optional<SurfaceShading> shading;
     if (arguments.attributes.needs_shading())
-      shading.emplace(mesh, source.appearance, &warnings, &progress, &memory);
+      shading.emplace(mesh, source.appearance, &warnings, work);
     print_warnings(warnings, session);
-    attributes =
-        build_wanted_attributes(arguments.attributes, source, view, shading ? &*shading : nullptr,
-                                memory, report.metadata, progress);
+    attributes = build_wanted_attributes(arguments.attributes, source, view,
+                                         shading ? &*shading : nullptr, report.metadata, work);
     seconds.attributes = watch.lap();
   }
   if (has_attributes) free_source();
-  progress.throw_if_cancelled();
+  work.poll();
   report.attributes = sizes_of(attributes.view());
   if (arguments.compact) {
     const MemoryReservation attribute_bytes(&memory, attributes.bytes());
-    const CompactSvdag compact = encode_svdag(view, {.memory = &memory}, &progress);
+    const CompactSvdag compact = encode_svdag(view, {}, work);
     seconds.compact = watch.lap();
     write_vdag(arguments.output, compact, report.metadata, attributes.view());
     report.compact = bytes_of(compact.view(), compact_head(compact).size());

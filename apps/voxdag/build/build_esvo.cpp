@@ -94,23 +94,22 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   check_regular(arguments.output);
   check_writable(arguments.output);
   const EsvoArguments& esvo = arguments.esvo;
-  Progress& progress = session.progress;
   Stopwatch watch;
   EsvoSeconds seconds;
   MemoryBudget memory = command_budget(arguments.memory_limit);
+  const Work work(&memory, &session.progress);
   MeshAccess access = arguments.access;
   access.memory = &memory;
   MeshWithAppearance source = read_mesh_file_with_appearance(session.subject, access, session);
   seconds.read = watch.lap();
   std::vector<std::string> warnings;
-  const SurfaceShading shading(source.mesh, source.appearance, &warnings, &progress, &memory);
+  const SurfaceShading shading(source.mesh, source.appearance, &warnings, work);
   const std::optional<DisplacedTriangles> displaced =
-      open_displaced(esvo.displace, source.mesh, source.appearance, warnings, progress, &memory);
+      open_displaced(esvo.displace, source.mesh, source.appearance, warnings, work);
   print_warnings(warnings, session);
   seconds.textures = watch.lap();
 
   EsvoOptions options;
-  options.memory = &memory;
   options.settings = esvo.settings;
   options.settings.normal_error = static_cast<float>(esvo.normal_degrees * std::numbers::pi / 180);
   const DisplacedTriangles* const moved = displaced ? &*displaced : nullptr;
@@ -127,7 +126,7 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   std::optional<Occluders> occluders;
   if (esvo.bake.rays > 0 && options.settings.attributes) {
     add_bake_settings(esvo.bake, metadata.grid, metadata.build);
-    occluders.emplace(source.mesh, metadata.grid, esvo.bake, options, shading, moved, progress);
+    occluders.emplace(source.mesh, metadata.grid, esvo.bake, options, shading, moved, work);
     options.settings.light = occluders->light();
   }
   EsvoReport report;
@@ -135,10 +134,10 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
     EsvoFileWriter writer(arguments.output);
     FileSink sink(writer);
     EsvoResult result =
-        build_esvo(source.mesh, metadata.grid, options, &shading, moved, sink, &progress);
+        build_esvo(source.mesh, metadata.grid, options, &shading, moved, sink, work);
     metadata.root = result.root;
     metadata.counts = result.counts;
-    progress.throw_if_cancelled();
+    work.poll();
     // Does not read the file back: its name may already belong to another file.
     report = {metadata, sink.bytes(), writer.finish(std::move(result.directory), metadata)};
   }

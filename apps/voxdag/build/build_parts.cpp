@@ -85,7 +85,7 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
       temporary ? temporary->path() / "work" : std::filesystem::path(arguments.work_folder);
   PartsReport parts;
   try {
-    parts = build_in_parts(job, written_by(), process.ranks(), memory, &session.progress);
+    parts = build_in_parts(job, written_by(), process.ranks(), {&memory, &session.progress});
   } catch (const Cancelled&) {
     if (!temporary && process.is_first())
       print_line("the work is kept in " + arguments.work_folder +

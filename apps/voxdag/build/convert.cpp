@@ -51,7 +51,7 @@ DagModel read_input(const ConvertArguments& arguments, DagReduction& reduction,
   const std::string& path = session.subject;
   VdagContainer opened(path, &memory);
   if (opened.kind() != VdagKind::kLong) {
-    DagModel file(std::move(opened), &session.progress, &memory);
+    DagModel file(std::move(opened), {&memory, &session.progress});
     reduction = reduction_of(arguments, file.grid().levels, path);
     return file;
   }
@@ -63,7 +63,7 @@ DagModel read_input(const ConvertArguments& arguments, DagReduction& reduction,
     throw Error(path, "",
                 "has too many nodes for 32-bit pointers: give fewer levels (voxdag coarsen), or a "
                 "window (voxdag crop)");
-  Svdag dag = coarsen(file.view(), levels, &memory, &session.progress);
+  Svdag dag = coarsen(file.view(), levels, {&memory, &session.progress});
   VdagMetadata metadata = file.metadata();
   if (levels < file.view().levels) metadata = coarser_metadata(metadata, dag.view());
   return {std::move(dag), {}, std::move(metadata), &memory};
@@ -75,13 +75,13 @@ void convert(const ConvertArguments& arguments, Session& session) {
   MemoryBudget memory = command_budget(arguments.memory_limit);
   DagReduction reduction;
   const DagModel file = read_input(arguments, reduction, memory, session);
-  const ReducedDag dag(file, session.subject, reduction, &memory, &session.progress);
+  const ReducedDag dag(file, session.subject, reduction, {&memory, &session.progress});
   const bool compact = arguments.compact || (!arguments.plain && file.is_compact());
   const DagAttributesView attributes = dag.attributes();
   const AttributeForm form = arguments.wire ? AttributeForm::kWire : AttributeForm::kPages;
   const MemoryReservation coded = reserve_coded(attributes, form, &memory);
   if (compact) {
-    write_vdag(arguments.output, encode_svdag(dag.dag(), {.memory = &memory}, &session.progress),
+    write_vdag(arguments.output, encode_svdag(dag.dag(), {}, {&memory, &session.progress}),
                dag.metadata(), attributes, form);
   } else {
     write_vdag(arguments.output, dag.dag(), dag.metadata(), attributes, form);

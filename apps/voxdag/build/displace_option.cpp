@@ -64,18 +64,17 @@ Option add_no_displacement_option(const Command& command, DisplaceArguments& arg
 
 std::optional<DisplacedTriangles> open_displaced(const DisplaceArguments& arguments,
                                                  const Mesh& mesh, const Appearance& appearance,
-                                                 std::vector<std::string>& warnings,
-                                                 Progress& progress, MemoryBudget* memory) {
+                                                 std::vector<std::string>& warnings, Work work) {
   std::vector<Displacement> displacements;
   if (!arguments.texture.empty()) {
-    const ImageOptions options = image_options(&progress, memory);
+    const ImageOptions options = image_options(work);
     const auto heights = std::make_shared<const HeightTexture>(
         arguments.texture == "stone"
             ? make_stone_heights(1, 1024)
             : make_height_texture(read_image(arguments.texture, options), {}, options));
     displacements = displace_all(mesh, appearance, heights, arguments.amount, arguments.scale);
   } else if (!arguments.is_off) {
-    displacements = load_displacements(mesh, appearance, warnings, &progress, memory);
+    displacements = load_displacements(mesh, appearance, warnings, work);
   }
   if (std::none_of(displacements.begin(), displacements.end(),
                    [](const Displacement& d) { return d.moves(); }))

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/displace/displaced_triangles.hpp"
 
 namespace voxdag::cli {
@@ -28,9 +28,7 @@ Option add_no_displacement_option(const Command& command, DisplaceArguments& arg
 /// Returns the displaced mesh, or nothing if there is no displacement.
 std::optional<DisplacedTriangles> open_displaced(const DisplaceArguments& arguments,
                                                  const Mesh& mesh, const Appearance& appearance,
-                                                 std::vector<std::string>& warnings,
-                                                 Progress& progress,
-                                                 MemoryBudget* memory = nullptr);
+                                                 std::vector<std::string>& warnings, Work work);
 
 /// Returns the bounding box of the displaced surface.
 Box3d displaced_bounds(const DisplacedTriangles& displaced, const Mesh& mesh);

@@ -55,10 +55,8 @@ std::vector<std::string> warnings_of(const VoxelSource& source, const std::strin
 }
 
 /// Imports the file. Errors name it.
-ImportedModel import_file(const ImportArguments& arguments, MemoryBudget& memory,
-                          Session& session) {
+ImportedModel import_file(const ImportArguments& arguments, Work work, Session& session) {
   ImportOptions options = arguments.options;
-  options.memory = &memory;
   options.colors = !arguments.is_grey;
   options.folder = std::filesystem::path(arguments.output).parent_path();
   if (options.folder.empty()) options.folder = ".";
@@ -68,8 +66,7 @@ ImportedModel import_file(const ImportArguments& arguments, MemoryBudget& memory
     print_warnings(warnings_of(*source, session.subject), session);
     check_grid_options(*source, options);
     return import_model(*source, options,
-                        std::filesystem::path(session.subject).filename().string(),
-                        &session.progress);
+                        std::filesystem::path(session.subject).filename().string(), work);
   });
 }
 
@@ -83,9 +80,10 @@ void import(const ImportArguments& arguments, Session& session) {
   check_writable(arguments.output);
   const Stopwatch watch;
   MemoryBudget memory = command_budget(arguments.memory_limit);
-  const ImportedModel result = import_file(arguments, memory, session);
+  const Work work(&memory, &session.progress);
+  const ImportedModel result = import_file(arguments, work, session);
   const DagModel& model = result.model;
-  model.save(arguments.output, arguments.compact, &session.progress, &memory);
+  model.save(arguments.output, arguments.compact, work);
   const SvdagCounts& counts = model.metadata().counts;
   session.bar.clear();
   if (result.not_finite > 0)
@@ -109,8 +107,7 @@ void import(const ImportArguments& arguments, Session& session) {
     fmt::print(
         "{}: {} read{}, {} voxels of {}³, {}, {}\n", arguments.output, with_commas(result.read),
         result.outside > 0 ? fmt::format(", {} of them outside", with_commas(result.outside)) : "",
-        with_commas(counts.voxels),
-        with_commas(static_cast<std::uint64_t>(model.grid().resolution())),
+        with_commas(counts.voxels), with_commas(model.grid().resolution()),
         human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
         human_seconds(watch.since_start()));
   }

@@ -63,11 +63,10 @@ void print_list(bool json) {
                "", scene.size_meaning, scene.min_size, scene.max_size, scene.default_size);
 }
 
-void make(const SceneArguments& arguments, const Session& session) {
-  const Progress& progress = session.progress;
+void make(const SceneArguments& arguments, Session& session) {
   check_writable(arguments.output);
-  const Mesh mesh = make_scene(arguments.name, arguments.options, &progress);
-  write_ply(arguments.output, mesh, &progress);
+  const Mesh mesh = make_scene(arguments.name, arguments.options, &session.progress);
+  write_ply(arguments.output, mesh, &session.progress);
   if (session.json) {
     const nlohmann::ordered_json summary = {{"file", arguments.output},
                                             {"vertices", mesh.vertices.size()},

@@ -23,8 +23,7 @@ auto read_and_check(const std::string& file, const MeshAccess& access, Session& 
                     const Read& read) {
   std::vector<std::filesystem::path> named;
   ReadOptions options;
-  options.progress = &session.progress;
-  options.memory = access.memory;
+  options.work = {access.memory, &session.progress};
   access.give_rights(options);
   options.named_files = &named;
   auto result = read(options);

@@ -16,7 +16,7 @@ namespace voxdag::cli {
 struct MeshAccess {
   bool allow_outside = false;       ///< As ReadOptions::allow_outside.
   bool any_importer = false;        ///< As ReadOptions::any_assimp_importer.
-  MemoryBudget* memory = nullptr;   ///< As ReadOptions::memory.
+  MemoryBudget* memory = nullptr;   ///< The budget of ReadOptions::work.
   std::vector<OutputFile> outputs;  ///< Files that the command writes: no mesh may name them.
 
   /// Sets the rights of a reader.

@@ -66,7 +66,7 @@ MemoryReservation reserve_coded(const DagAttributesView& attributes, AttributeFo
 }
 
 ReducedDag::ReducedDag(const DagModel& file, const std::string& path, const DagReduction& reduction,
-                       MemoryBudget* memory, Progress* progress)
+                       Work work)
     : dag_(file.view()), metadata_(file.metadata()) {
   if (!reduction.drop_attributes) attributes_ = file.attributes();
   if (attributes_.is_empty())
@@ -79,16 +79,15 @@ ReducedDag::ReducedDag(const DagModel& file, const std::string& path, const DagR
                 fmt::format("has {} levels, {} voxels a side: it cannot get {} levels", dag_.levels,
                             std::int64_t{1} << dag_.levels, levels));
   if (levels == dag_.levels) return;
-  coarse_ = coarsen(dag_, levels, memory, progress);
+  coarse_ = coarsen(dag_, levels, work);
   dag_ = coarse_.view();
   metadata_ = coarser_metadata(metadata_, dag_);
   if (attributes_.is_empty()) return;
-  coarse_attributes_ =
-      coarsen_attributes({file.view(), attributes_}, dag_, reduction.bounds, memory, progress);
+  coarse_attributes_ = coarsen_attributes({file.view(), attributes_}, dag_, reduction.bounds, work);
   if (attributes_.index.finest_level > levels) encode_again(metadata_.attributes, reduction.bounds);
   attributes_ = coarse_attributes_.view();
   metadata_.attributes.resolution = std::int64_t{1} << attributes_.index.finest_level;
-  memory_ = MemoryReservation(memory, coarse_attributes_.bytes());
+  memory_ = MemoryReservation(work.memory, coarse_attributes_.bytes());
 }
 
 }  // namespace voxdag::cli

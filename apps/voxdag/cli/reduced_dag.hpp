@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/file/attribute_form.hpp"
 #include "voxdag/file/model/scene_model.hpp"
 #include "voxdag/stored/attributes/coarsen_attributes.hpp"
@@ -21,7 +22,7 @@ struct DagReduction {
 std::vector<Option> add_reduction_options(const Command& command, DagReduction& reduction);
 
 /// Reserves the memory that a writer takes for attributes in this form, besides the attributes.
-/// `memory` may be null. Throws OverMemory.
+/// Throws OverMemory.
 MemoryReservation reserve_coded(const DagAttributesView& attributes, AttributeForm form,
                                 MemoryBudget* memory);
 
@@ -31,9 +32,9 @@ class ReducedDag {
  public:
   /// `path` is the file's name, for errors. Throws Error if `reduction` asks for more levels than
   /// the file has, or if the file's metadata does not describe its attributes; OverMemory and
-  /// Cancelled. `memory` may be null.
+  /// Cancelled.
   ReducedDag(const DagModel& file, const std::string& path, const DagReduction& reduction,
-             MemoryBudget* memory, Progress* progress);
+             Work work);
 
   const SvdagView& dag() const { return dag_; }
   const DagAttributesView& attributes() const { return attributes_; }

@@ -23,11 +23,11 @@ namespace {
 class AlignedFiles {
  public:
   AlignedFiles(const std::string& first, const std::string& second, const EditArguments& arguments,
-               MemoryBudget& memory, Session& session)
-      : first_(first, &session.progress, &memory), second_(second, &session.progress, &memory) {
+               Work work)
+      : first_(first, work), second_(second, work) {
     refuse_attributes(first_, first, arguments);
     refuse_attributes(second_, second, arguments);
-    with_file_name(second, [&] { models_.emplace(first_, second_, &memory, &session.progress); });
+    with_file_name(second, [&] { models_.emplace(first_, second_, work); });
   }
   AlignedFiles(const AlignedFiles&) = delete;
   AlignedFiles& operator=(const AlignedFiles&) = delete;
@@ -46,21 +46,36 @@ struct CombineArguments {
   bool is_union = false, is_intersection = false, is_difference = false, is_symmetric = false;
 };
 
+SetOperation chosen_operation(const CombineArguments& arguments) {
+  if (arguments.is_union) return SetOperation::kUnion;
+  if (arguments.is_intersection) return SetOperation::kIntersection;
+  if (arguments.is_difference) return SetOperation::kDifference;
+  return SetOperation::kSymmetric;
+}
+
+/// Returns the text that tells in the metadata of the result how its voxels were made.
+std::string edit_text(SetOperation operation, const std::string& second) {
+  const std::string name = std::filesystem::path(second).filename().string();
+  switch (operation) {
+    case SetOperation::kUnion:
+      return "union with " + name;
+    case SetOperation::kIntersection:
+      return "intersection with " + name;
+    case SetOperation::kDifference:
+      return "minus " + name;
+    default:
+      return "symmetric difference with " + name;
+  }
+}
+
 void run_combine(const CombineArguments& arguments, Session& session) {
   check_writable(arguments.edit.output);
   MemoryBudget memory = command_budget(arguments.edit.memory_limit);
-  const AlignedFiles files(session.subject, arguments.second, arguments.edit, memory, session);
-  const SetOperation operation = arguments.is_union          ? SetOperation::kUnion
-                                 : arguments.is_intersection ? SetOperation::kIntersection
-                                 : arguments.is_difference   ? SetOperation::kDifference
-                                                             : SetOperation::kSymmetric;
-  const char* name = arguments.is_union          ? "union with "
-                     : arguments.is_intersection ? "intersection with "
-                     : arguments.is_difference   ? "minus "
-                                                 : "symmetric difference with ";
-  const std::string edit = name + std::filesystem::path(arguments.second).filename().string();
+  const AlignedFiles files(session.subject, arguments.second, arguments.edit,
+                           {&memory, &session.progress});
+  const SetOperation operation = chosen_operation(arguments);
   write_edited(arguments.edit, files.models().result(operation), files.models().grid_of(operation),
-               files.first(), edit, memory, session);
+               files.first(), edit_text(operation, arguments.second), memory, session);
 }
 
 struct DiffArguments {
@@ -68,40 +83,50 @@ struct DiffArguments {
   std::string second;
 };
 
-void run_diff(const DiffArguments& arguments, Session& session) {
-  if (!arguments.edit.output.empty()) check_writable(arguments.edit.output);
-  MemoryBudget memory = command_budget(arguments.edit.memory_limit);
-  EditArguments voxels_only = arguments.edit;
-  voxels_only.drop_attributes = true;
-  const AlignedFiles files(session.subject, arguments.second, voxels_only, memory, session);
-  const auto count = [&](SetOperation operation) {
-    return count_svdag(files.models().combine(operation).view()).voxels;
-  };
-  Svdag dag = files.models().combine(SetOperation::kSymmetric);
-  const std::uint64_t differing = count_svdag(dag.view()).voxels;
-  const std::uint64_t only_first = count(SetOperation::kDifference);
-  const std::uint64_t both = count(SetOperation::kIntersection);
-  if (!arguments.edit.output.empty()) {
-    const bool quiet = session.quiet;
-    session.quiet = true;
-    write_edited(
-        voxels_only, std::move(dag), files.models().grid(), files.first(),
-        "symmetric difference with " + std::filesystem::path(arguments.second).filename().string(),
-        memory, session);
-    session.quiet = quiet;
-  }
+/// Numbers of voxels of two files.
+struct VoxelCounts {
+  std::uint64_t only_first, only_second, both;
+};
+
+void print_counts(const VoxelCounts& counts, const DiffArguments& arguments, Session& session) {
   session.bar.clear();
   if (session.json) {
-    const nlohmann::ordered_json json = {{"only_in_first", only_first},
-                                         {"only_in_second", differing - only_first},
-                                         {"in_both", both},
-                                         {"differing", differing}};
+    const nlohmann::ordered_json json = {{"only_in_first", counts.only_first},
+                                         {"only_in_second", counts.only_second},
+                                         {"in_both", counts.both},
+                                         {"differing", counts.only_first + counts.only_second}};
     fmt::print("{}", json_text(json));
   } else if (!session.quiet) {
     fmt::print("only in {}: {} voxels\nonly in {}: {} voxels\nin both: {} voxels\n",
-               session.subject, with_commas(only_first), arguments.second,
-               with_commas(differing - only_first), with_commas(both));
+               session.subject, with_commas(counts.only_first), arguments.second,
+               with_commas(counts.only_second), with_commas(counts.both));
   }
+}
+
+/// Writes the voxels that differ. Prints no summary of the file: the command prints its counts.
+void write_difference(const DiffArguments& arguments, Svdag differing, const AlignedFiles& files,
+                      MemoryBudget& memory, Session& session) {
+  const bool quiet = std::exchange(session.quiet, true);
+  write_edited(arguments.edit, std::move(differing), files.models().grid(), files.first(),
+               edit_text(SetOperation::kSymmetric, arguments.second), memory, session);
+  session.quiet = quiet;
+}
+
+void run_diff(const DiffArguments& arguments, Session& session) {
+  if (!arguments.edit.output.empty()) check_writable(arguments.edit.output);
+  MemoryBudget memory = command_budget(arguments.edit.memory_limit);
+  const AlignedFiles files(session.subject, arguments.second, arguments.edit,
+                           {&memory, &session.progress});
+  const auto count = [&](SetOperation operation) {
+    return count_svdag(files.models().combine(operation).view()).voxels;
+  };
+  Svdag differing = files.models().combine(SetOperation::kSymmetric);
+  const std::uint64_t either = count_svdag(differing.view()).voxels,
+                      only_first = count(SetOperation::kDifference);
+  const VoxelCounts counts{only_first, either - only_first, count(SetOperation::kIntersection)};
+  if (!arguments.edit.output.empty())
+    write_difference(arguments, std::move(differing), files, memory, session);
+  print_counts(counts, arguments, session);
 }
 
 }  // namespace
@@ -151,6 +176,7 @@ void add_diff_command(const Command& program, Session& session) {
   command.text("first", session.subject, "A", "A .vdag file").required();
   command.text("second", arguments->second, "B", "Another .vdag file").required();
   EditArguments& edit = arguments->edit;
+  edit.drop_attributes = true;  // The command compares voxels only.
   add_optional_output(command, edit, "The .vdag file to write: voxels of only one of both");
   add_memory_option(command, edit.memory_limit);
   add_json_option(command, session);

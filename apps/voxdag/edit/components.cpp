@@ -54,15 +54,15 @@ void run(const ComponentsArguments& arguments, Session& session) {
   const EditArguments& edit = arguments.edit;
   if (!edit.output.empty()) check_writable(edit.output);
   MemoryBudget memory = command_budget(edit.memory_limit);
-  const DagModel file(session.subject, &session.progress, &memory);
+  const DagModel file(session.subject, {&memory, &session.progress});
   if (!edit.output.empty()) refuse_attributes(file, session.subject, edit);
   const std::vector<ComponentSizes> sizes =
-      component_sizes(file.view(), arguments.neighbours, &memory, &session.progress);
+      component_sizes(file.view(), arguments.neighbours, {&memory, &session.progress});
   if (!edit.output.empty()) {
     const std::uint64_t least =
         arguments.largest ? (sizes.empty() ? 1 : sizes.front().voxels) : arguments.least;
     Svdag dag =
-        keep_components(file.view(), least, arguments.neighbours, &memory, &session.progress);
+        keep_components(file.view(), least, arguments.neighbours, {&memory, &session.progress});
     const bool quiet = session.quiet;
     session.quiet = quiet || session.json;
     write_edited(edit, std::move(dag), file.grid(), file,

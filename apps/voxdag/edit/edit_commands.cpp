@@ -27,8 +27,7 @@ namespace {
 /// What an edit may use.
 struct EditContext {
   const std::string& path;  ///< The input, for errors.
-  MemoryBudget* memory;
-  Progress* progress;
+  Work work;
 };
 
 /// Makes the DAG of a command. May change the grid.
@@ -49,7 +48,7 @@ void add_edit(const Command& command, Session& session, const Edit& edit,
     session.work = [=, &session] {
       check_writable(arguments->output);
       MemoryBudget memory = command_budget(arguments->memory_limit);
-      const EditContext context{session.subject, &memory, &session.progress};
+      const EditContext context{session.subject, {&memory, &session.progress}};
       VdagContainer opened(session.subject, &memory);
       if (long_edit && opened.kind() == VdagKind::kLong) {
         const LongVdagFile file(std::move(opened));
@@ -60,7 +59,7 @@ void add_edit(const Command& command, Session& session, const Edit& edit,
             arguments->compact, memory, session);
         return;
       }
-      const DagModel file(std::move(opened), &session.progress, &memory);
+      const DagModel file(std::move(opened), {&memory, &session.progress});
       refuse_attributes(file, session.subject, *arguments);
       Grid grid = file.grid();
       Svdag dag = edit(file.view(), grid, context);
@@ -95,11 +94,11 @@ void add_crop_command(const Command& program, Session& session) {
   add_edit(
       command, session,
       [box](const SvdagView& dag, Grid&, const EditContext& context) {
-        return crop(dag, *box, context.memory, context.progress);
+        return crop(dag, *box, context.work);
       },
       [box] { return "cropped to " + text_of(box->lo) + "," + text_of(box->hi); },
       [box](const LongSvdagView& dag, const EditContext& context) {
-        return crop(dag, *box, context.memory, context.progress);
+        return crop(dag, *box, context.work);
       });
 }
 
@@ -124,7 +123,7 @@ void add_shift_command(const Command& program, Session& session) {
       command, session,
       [arguments](const SvdagView& dag, Grid& grid, const EditContext& context) {
         grid.levels = arguments->levels.value_or(grid.levels);
-        Svdag moved = shift(dag, arguments->by, grid.levels, context.memory, context.progress);
+        Svdag moved = shift(dag, arguments->by, grid.levels, context.work);
         if (arguments->drop_outside) return moved;
         const std::uint64_t lost = count_svdag(dag).voxels - count_svdag(moved.view()).voxels;
         if (lost != 0)
@@ -146,7 +145,7 @@ void add_mirror_command(const Command& program, Session& session) {
   add_edit(
       command, session,
       [axis](const SvdagView& dag, Grid&, const EditContext& context) {
-        return reorient(dag, mirrored(*axis), context.memory, context.progress);
+        return reorient(dag, mirrored(*axis), context.work);
       },
       [axis] { return fmt::format("mirrored along {}", "xyz"[*axis]); });
 }
@@ -167,8 +166,7 @@ void add_rotate_command(const Command& program, Session& session) {
   add_edit(
       command, session,
       [arguments](const SvdagView& dag, Grid&, const EditContext& context) {
-        return reorient(dag, rotated(arguments->axis, arguments->turns), context.memory,
-                        context.progress);
+        return reorient(dag, rotated(arguments->axis, arguments->turns), context.work);
       },
       [arguments] {
         return fmt::format("rotated about {} by {} quarter turns", "xyz"[arguments->axis],
@@ -198,10 +196,8 @@ void add_grow_command(const Command& program, Session& session, bool is_dilation
   add_edit(
       command, session,
       [=](const SvdagView& dag, Grid&, const EditContext& context) {
-        return is_dilation ? dilate(dag, arguments->steps, arguments->neighbours, context.memory,
-                                    context.progress)
-                           : erode(dag, arguments->steps, arguments->neighbours, context.memory,
-                                   context.progress);
+        return is_dilation ? dilate(dag, arguments->steps, arguments->neighbours, context.work)
+                           : erode(dag, arguments->steps, arguments->neighbours, context.work);
       },
       [=] {
         return fmt::format("{} by {} steps to {} neighbours", is_dilation ? "dilated" : "eroded",
@@ -218,7 +214,7 @@ void add_fill_command(const Command& program, Session& session) {
   add_edit(
       command, session,
       [](const SvdagView& dag, Grid&, const EditContext& context) {
-        return fill_cavities(dag, context.memory, context.progress);
+        return fill_cavities(dag, context.work);
       },
       [] { return "filled"; });
 }

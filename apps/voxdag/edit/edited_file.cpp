@@ -69,7 +69,7 @@ void write_edited(const EditArguments& arguments, Svdag dag, const Grid& grid,
 
 void write_edited(const EditArguments& arguments, const DagModel& model, bool compact,
                   MemoryBudget& memory, Session& session) {
-  model.save(arguments.output, compact, &session.progress, &memory);
+  model.save(arguments.output, compact, {&memory, &session.progress});
   const std::uint64_t voxels = model.metadata().counts.voxels;
   session.bar.clear();
   warn_if_empty(voxels, arguments.output, session);

@@ -29,12 +29,12 @@ void esvo_info(const VdagContainer& opened, bool json) {
 }
 
 /// Decodes a compact DAG, so that the report has the bytes of both forms.
-DagReport dag_report(const VdagContainer& opened, Progress& progress) {
+DagReport dag_report(const VdagContainer& opened, Work work) {
   if (opened.kind() == VdagKind::kLong) {
     const LongVdagFile file(opened);
     return report_of(file.view(), file.metadata(), file.file_bytes());
   }
-  const DagModel file(opened, &progress);
+  const DagModel file(opened, work);
   DagReport report = report_of(file.view(), file.metadata(), file.file_bytes());
   report.attributes = sizes_of(file.attributes());
   const WireBytes wire = wire_bytes_of(opened);
@@ -48,10 +48,10 @@ DagReport dag_report(const VdagContainer& opened, Progress& progress) {
   return report;
 }
 
-void info(const std::string& path, bool json, Progress& progress) {
+void info(const std::string& path, bool json, Work work) {
   const VdagContainer opened(path);
   if (opened.kind() == VdagKind::kEsvo) return esvo_info(opened, json);
-  const DagReport report = dag_report(opened, progress);
+  const DagReport report = dag_report(opened, work);
   if (json) {
     fmt::print("{}", json_text(dag_json(report)));
     return;
@@ -70,7 +70,7 @@ void add_info_command(const Command& program, Session& session) {
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   add_json_option(command, session);
   command.when_parsed([&session] {
-    session.work = [&session] { info(session.subject, session.json, session.progress); };
+    session.work = [&session] { info(session.subject, session.json, &session.progress); };
   });
 }
 

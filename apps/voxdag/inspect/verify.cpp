@@ -143,17 +143,16 @@ std::vector<VerifyCheck> solid_checks(const VerifyArguments& arguments, const Da
                                       const Mesh& mesh, Session& session) {
   const std::map<std::string, std::string>& settings = file.metadata().build;
   const std::string& rule = settings.at("solid");
-  Progress* const progress = &session.progress;
-  const Svdag surface = build_svdag(mesh, file.grid(), {}, progress).dag;
+  const Work work = &session.progress;
+  const Svdag surface = build_svdag(mesh, file.grid(), {}, work).dag;
   std::vector<VerifyCheck> checks = {
       cover_check(arguments, surface.view(), file.grid(), mesh, session)};
   if (checks[0].result != Result::kPassed) return checks;
   VerifyCheck check{"solid", Result::kPassed, {}};
   try {
     const Svdag filled =
-        fill_solid(surface.view(), mesh, file.grid(), solid_options(settings), nullptr, progress);
-    const Svdag different =
-        combine(file.view(), filled.view(), SetOperation::kSymmetric, nullptr, progress);
+        fill_solid(surface.view(), mesh, file.grid(), solid_options(settings), work);
+    const Svdag different = combine(file.view(), filled.view(), SetOperation::kSymmetric, work);
     const std::uint64_t voxels = count_svdag(different.view()).voxels;
     check.detail = fmt::format("{} voxels differ from the inside of {} by {}", with_commas(voxels),
                                arguments.mesh, rule);
@@ -235,7 +234,7 @@ VerifyCheck enclosure_check(const VerifyArguments& arguments, const VdagContaine
   const SurfaceShading shading(source.mesh, source.appearance, nullptr, &session.progress);
   std::vector<std::string> warnings;
   const std::optional<DisplacedTriangles> displaced =
-      open_displaced(*displace, source.mesh, source.appearance, warnings, session.progress);
+      open_displaced(*displace, source.mesh, source.appearance, warnings, &session.progress);
   const QuantizedMesh quantized(source.mesh, file.grid());
   const auto check_samples = [&](std::uint64_t samples) {
     return check_enclosure(file.view(), quantized, file.grid(), &shading,
@@ -267,7 +266,7 @@ std::vector<VerifyCheck> mesh_checks(const VerifyArguments& arguments, const Vda
 
 void verify(const VerifyArguments& arguments, Session& session) {
   const VdagContainer opened(session.subject);
-  VerifyReport report = opened.is(VdagKind::kCompact) ? verify_compact(opened, session.progress)
+  VerifyReport report = opened.is(VdagKind::kCompact) ? verify_compact(opened, &session.progress)
                                                       : verify_vdag(opened);
   session.progress.throw_if_cancelled();
   if (!arguments.mesh.empty()) {

@@ -13,8 +13,8 @@ namespace voxdag::cli {
 namespace {
 
 /// Throws Error unless the compact form of `dag` is the one of the file.
-void check_bytes(const Svdag& dag, const CompactContents& file, Progress& progress) {
-  const CompactSvdag again = encode_svdag(dag.view(), {}, &progress);
+void check_bytes(const Svdag& dag, const CompactContents& file, Work work) {
+  const CompactSvdag again = encode_svdag(dag.view(), {}, work);
   const auto check = [](const char* chunk, std::span<const std::byte> expected,
                         std::span<const std::byte> found) {
     if (!std::equal(expected.begin(), expected.end(), found.begin(), found.end()))
@@ -27,15 +27,15 @@ void check_bytes(const Svdag& dag, const CompactContents& file, Progress& progre
 
 }  // namespace
 
-VerifyReport verify_compact(const VdagContainer& file, Progress& progress) {
+VerifyReport verify_compact(const VdagContainer& file, Work work) {
   VerifyReport report;
   CompactContents contents;
   Svdag dag;
   // Cancelled is an Error, but no result of a check.
   const auto check = [&](const char* name, std::initializer_list<std::size_t> needed,
-                         const auto& work) {
-    run_check(report, name, needed, work);
-    progress.throw_if_cancelled();
+                         const auto& body) {
+    run_check(report, name, needed, body);
+    work.poll();
   };
   enum : std::size_t { kContainer, kChecksums, kMetadata, kStructure };
   check("container", {}, [&] { contents.chunks = read_vdag_chunks(file.bytes()); });
@@ -43,10 +43,10 @@ VerifyReport verify_compact(const VdagContainer& file, Progress& progress) {
   check("metadata", {kContainer}, [&] { contents.metadata = read_vdag_metadata(contents.chunks); });
   check("structure", {kContainer, kChecksums, kMetadata}, [&] {
     contents = parse_compact(file.bytes());
-    dag = decode_svdag(contents.view(), nullptr, &progress);
+    dag = decode_svdag(contents.view(), work);
     validate_svdag(dag.view());
   });
-  check("canonical", {kStructure}, [&] { check_bytes(dag, contents, progress); });
+  check("canonical", {kStructure}, [&] { check_bytes(dag, contents, work); });
   check("counts", {kStructure},
         [&] { compare_counts(contents.metadata.counts, count_svdag(dag.view())); });
   check("attributes", {kStructure}, [&] {

@@ -1,6 +1,6 @@
 #pragma once
 /// The checks of a compact DAG.
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/file/verify_vdag.hpp"
 
 namespace voxdag::cli {
@@ -14,6 +14,6 @@ namespace voxdag::cli {
 ///   counts      the metadata has the counts of the DAG
 ///   attributes  attributes are valid, and the metadata describes them; passes if the file has none
 /// Throws Cancelled.
-VerifyReport verify_compact(const VdagContainer& file, Progress& progress);
+VerifyReport verify_compact(const VdagContainer& file, Work work);
 
 }  // namespace voxdag::cli

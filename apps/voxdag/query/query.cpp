@@ -175,7 +175,7 @@ void print_count(const QueryArguments& arguments, const DagModel& file, MemoryBu
                  Session& session) {
   std::uint64_t voxels = file.metadata().counts.voxels;
   if (arguments.window) {
-    const Svdag part = crop(file.view(), *arguments.window, &memory, &session.progress);
+    const Svdag part = crop(file.view(), *arguments.window, {&memory, &session.progress});
     voxels = part.view().is_empty() ? 0 : count_svdag(part.view()).voxels;
   } else {
     voxels = file.view().is_empty() ? 0 : count_svdag(file.view()).voxels;
@@ -188,7 +188,7 @@ void print_count(const QueryArguments& arguments, const DagModel& file, MemoryBu
 }
 
 void print_area(const DagModel& file, MemoryBudget& memory, Session& session) {
-  const VoxelSurface surface = surface_of(file.view(), &memory, &session.progress);
+  const VoxelSurface surface = surface_of(file.view(), {&memory, &session.progress});
   const double side = file.grid().voxel_size;
   const double volume = static_cast<double>(surface.voxels) * side * side * side,
                area = static_cast<double>(surface.all_faces()) * side * side;
@@ -206,7 +206,7 @@ void print_area(const DagModel& file, MemoryBudget& memory, Session& session) {
 void query(const QueryArguments& arguments, Session& session) {
   if (!arguments.output.empty()) check_writable(arguments.output);
   MemoryBudget memory = command_budget(arguments.memory_limit);
-  const DagModel file(session.subject, &session.progress, &memory);
+  const DagModel file(session.subject, {&memory, &session.progress});
   if (arguments.count) return print_count(arguments, file, memory, session);
   if (arguments.area) return print_area(file, memory, session);
   const std::string done = !arguments.points.empty()     ? answer_points(arguments, file, session)

@@ -38,10 +38,10 @@ void render_loaded(const RenderArguments& arguments, Session& session) {
   if (!device_scene) cpu_scene.emplace(scene);
   const std::unique_ptr<ViewSource> source =
       open_view_source(arguments.mesh, options.albedo, scene, file.grid(), session);
-  const auto render = [&](const RenderOptions& of_picture, Progress* progress) {
+  const auto render = [&](const RenderOptions& of_picture, Work work) {
     if (device_scene)
-      return render_image(*device_scene, file.grid(), of_picture, progress, source.get());
-    return render_image(*cpu_scene, file.grid(), of_picture, progress, source.get());
+      return render_image(*device_scene, file.grid(), of_picture, work, source.get());
+    return render_image(*cpu_scene, file.grid(), of_picture, work, source.get());
   };
   if (!arguments.path.file.empty())
     return render_film(arguments, {scene, file.grid(), render, {}}, options, session);

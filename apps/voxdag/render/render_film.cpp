@@ -112,7 +112,8 @@ void render_film(const RenderArguments& arguments, const FilmScene& scene,
                   estimate_seconds(film, scene.render) / job.count(), session);
   const Stopwatch watch;
   RankQueue queue(job.ranks(), kFrameCounter);
-  const std::vector<FrameTiming> timings = render_film(film, scene.render, queue, session.progress);
+  const std::vector<FrameTiming> timings =
+      render_film(film, scene.render, queue, &session.progress);
   if (!job.is_first()) return;
   if (!csv.empty()) write_whole_file(csv, timings_csv(timings));
   session.bar.clear();

@@ -32,11 +32,10 @@ struct Streamed {
   }
 
   RenderedImage render(const RenderOptions& options,
-                       const std::function<void(const RenderedImage&)>& on_pass,
-                       Progress* progress) {
+                       const std::function<void(const RenderedImage&)>& on_pass, Work work) {
     const Grid& grid = blocks.stream().grid();
-    if (on_device) return voxdag::render_streamed(*on_device, grid, options, on_pass, progress);
-    return voxdag::render_streamed(blocks, grid, options, on_pass, progress);
+    if (on_device) return voxdag::render_streamed(*on_device, grid, options, on_pass, work);
+    return voxdag::render_streamed(blocks, grid, options, on_pass, work);
   }
 
   StreamBlocks blocks;
@@ -48,7 +47,7 @@ void render_streamed_film(const RenderArguments& arguments, Streamed& streamed, 
   StreamBlocks& blocks = streamed.blocks;
   const Grid& grid = blocks.stream().grid();
   // A frame may take long: it reports its own progress and can be cancelled.
-  const auto render = [&](const RenderOptions& options, Progress*) {
+  const auto render = [&](const RenderOptions& options, Work) {
     return streamed.render(options, {}, &session.progress);
   };
   const auto find_up = [&] { return guess_up(CoarseCells::of(PagedCells(blocks), kUpLevel)); };

@@ -43,14 +43,13 @@ ShownScene ShownScene::read(const std::string& path, const ShownSceneArguments& 
   ShownScene scene;
   // make_unique() would need to move the budget, which cannot be moved.
   scene.memory_.reset(new MemoryBudget(command_budget(arguments.memory_limit)));
-  VdagContainer opened(path, scene.memory_.get());
+  const Work work(scene.memory_.get(), &session.progress);
+  VdagContainer opened(path, work.memory);
   refuse_esvo(opened.kind(), path);
-  scene.file_ =
-      std::make_unique<DagModel>(std::move(opened), &session.progress, scene.memory_.get());
-  scene.dag_ = std::make_unique<ReducedDag>(*scene.file_, path, arguments.reduction,
-                                            scene.memory_.get(), &session.progress);
+  scene.file_ = std::make_unique<DagModel>(std::move(opened), work);
+  scene.dag_ = std::make_unique<ReducedDag>(*scene.file_, path, arguments.reduction, work);
   const DagAttributesView& attributes = scene.dag_->attributes();
-  scene.coded_ = reserve_coded(attributes, form, scene.memory_.get());
+  scene.coded_ = reserve_coded(attributes, form, work.memory);
   scene.bytes_ = make_scene_bytes(scene.dag_->dag(), scene.dag_->metadata(), attributes, form);
   return scene;
 }

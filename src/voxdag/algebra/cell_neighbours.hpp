@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "voxdag/algebra/grow.hpp"
-#include "voxdag/algebra/leaf_coordinates.hpp"
 #include "voxdag/core/vec.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

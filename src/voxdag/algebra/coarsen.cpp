@@ -39,14 +39,14 @@ class CoarsenRule {
 
 }  // namespace
 
-Svdag coarsen(const SvdagView& dag, int levels, MemoryBudget* memory, Progress* progress) {
+Svdag coarsen(const SvdagView& dag, int levels, Work work) {
   assert(levels >= kMinLevels && levels <= dag.levels);
-  return rewrite(CoarsenRule(SourceDag(dag), levels), levels, memory, progress);
+  return rewrite(CoarsenRule(SourceDag(dag), levels), levels, work);
 }
 
-Svdag coarsen(const LongSvdagView& dag, int levels, MemoryBudget* memory, Progress* progress) {
+Svdag coarsen(const LongSvdagView& dag, int levels, Work work) {
   assert(levels >= kMinLevels && levels <= dag.levels);
-  return rewrite(CoarsenRule(LongSourceDag(dag), levels), levels, memory, progress);
+  return rewrite(CoarsenRule(LongSourceDag(dag), levels), levels, work);
 }
 
 }  // namespace voxdag

@@ -87,10 +87,9 @@ class CombineRule {
 
 }  // namespace
 
-Svdag combine(const SvdagView& a, const SvdagView& b, SetOperation operation, MemoryBudget* memory,
-              Progress* progress) {
+Svdag combine(const SvdagView& a, const SvdagView& b, SetOperation operation, Work work) {
   assert(a.levels == b.levels);
-  return rewrite(CombineRule(a, b, operation), a.levels, memory, progress);
+  return rewrite(CombineRule(a, b, operation), a.levels, work);
 }
 
 }  // namespace voxdag

@@ -1,7 +1,6 @@
 #pragma once
 /// Set operations on DAGs.
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
@@ -16,8 +15,7 @@ enum class SetOperation {
 /// Returns the minimal DAG, in canonical order, of the voxels that `operation` selects. Both DAGs
 /// must be valid and have equal numbers of levels. The time and memory follow the number of
 /// different pairs of nodes at equal places. Throws Error if the result outgrows 32-bit pointers,
-/// OverMemory and Cancelled; `memory` and `progress` may be null.
-Svdag combine(const SvdagView& a, const SvdagView& b, SetOperation operation,
-              MemoryBudget* memory = nullptr, Progress* progress = nullptr);
+/// OverMemory and Cancelled.
+Svdag combine(const SvdagView& a, const SvdagView& b, SetOperation operation, Work work = {});
 
 }  // namespace voxdag

@@ -36,8 +36,8 @@ struct Cavities {
 }  // namespace
 
 std::vector<ComponentSizes> component_sizes(const SvdagView& dag, Neighbours neighbours,
-                                            MemoryBudget* memory, Progress* progress) {
-  const Regions regions(dag, RegionKind::kVoxels, neighbours, memory, progress);
+                                            Work work) {
+  const Regions regions(dag, RegionKind::kVoxels, neighbours, work);
   std::map<std::uint64_t, std::uint64_t, std::greater<>> counts;
   if (dag.is_empty()) return {};
   const std::uint32_t root = regions.source().root();
@@ -64,15 +64,14 @@ std::vector<ComponentSizes> component_sizes(const SvdagView& dag, Neighbours nei
   return sizes;
 }
 
-Svdag keep_components(const SvdagView& dag, std::uint64_t least, Neighbours neighbours,
-                      MemoryBudget* memory, Progress* progress) {
-  const Regions regions(dag, RegionKind::kVoxels, neighbours, memory, progress);
-  return select_regions(regions, LargeComponents{least, regions}, memory, progress);
+Svdag keep_components(const SvdagView& dag, std::uint64_t least, Neighbours neighbours, Work work) {
+  const Regions regions(dag, RegionKind::kVoxels, neighbours, work);
+  return select_regions(regions, LargeComponents{least, regions}, work);
 }
 
-Svdag fill_cavities(const SvdagView& dag, MemoryBudget* memory, Progress* progress) {
-  const Regions regions(dag, RegionKind::kEmpty, Neighbours::k6, memory, progress);
-  return select_regions(regions, Cavities{}, memory, progress);
+Svdag fill_cavities(const SvdagView& dag, Work work) {
+  const Regions regions(dag, RegionKind::kEmpty, Neighbours::k6, work);
+  return select_regions(regions, Cavities{}, work);
 }
 
 }  // namespace voxdag

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "voxdag/algebra/leaf_coordinates.hpp"
 #include "voxdag/algebra/long_source_dag.hpp"
 #include "voxdag/algebra/source_dag.hpp"
 
@@ -102,12 +101,12 @@ class CropRule {
 
 }  // namespace
 
-Svdag crop(const SvdagView& dag, const Box3i& box, MemoryBudget* memory, Progress* progress) {
-  return rewrite(CropRule(SourceDag(dag), box), dag.levels, memory, progress);
+Svdag crop(const SvdagView& dag, const Box3i& box, Work work) {
+  return rewrite(CropRule(SourceDag(dag), box), dag.levels, work);
 }
 
-Svdag crop(const LongSvdagView& dag, const Box3i& box, MemoryBudget* memory, Progress* progress) {
-  return rewrite(CropRule(LongSourceDag(dag), box), dag.levels, memory, progress);
+Svdag crop(const LongSvdagView& dag, const Box3i& box, Work work) {
+  return rewrite(CropRule(LongSourceDag(dag), box), dag.levels, work);
 }
 
 }  // namespace voxdag

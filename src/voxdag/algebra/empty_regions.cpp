@@ -65,11 +65,9 @@ class ListedRegions {
 
 }  // namespace
 
-EmptyRegions::EmptyRegions(const SvdagView& dag, MemoryBudget* memory, Progress* progress)
-    : regions_(
-          std::make_unique<Regions>(dag, RegionKind::kEmpty, Neighbours::k6, memory, progress)),
-      memory_(memory),
-      progress_(progress) {
+EmptyRegions::EmptyRegions(const SvdagView& dag, Work work)
+    : regions_(std::make_unique<Regions>(dag, RegionKind::kEmpty, Neighbours::k6, work)),
+      work_(work) {
   const std::uint32_t root = regions_->source().root();
   for (std::uint32_t i = 0; i < regions_->counts(0, root).open; ++i)
     places_.push_back(regions_->place_in(0, root, i));
@@ -92,7 +90,7 @@ void EmptyRegions::add_places(int level, std::uint32_t node, Vec3i first) {
 }
 
 Svdag EmptyRegions::fill(const std::vector<bool>& is_filled) const {
-  return select_regions(*regions_, ListedRegions(*regions_, is_filled), memory_, progress_);
+  return select_regions(*regions_, ListedRegions(*regions_, is_filled), work_);
 }
 
 }  // namespace voxdag

@@ -4,8 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
@@ -16,10 +15,8 @@ class Regions;
 /// All sets of empty places that are connected over faces.
 class EmptyRegions {
  public:
-  /// `dag` must be valid, have voxels, and outlive this object. Throws OverMemory and Cancelled;
-  /// `memory` and `progress` may be null.
-  explicit EmptyRegions(const SvdagView& dag, MemoryBudget* memory = nullptr,
-                        Progress* progress = nullptr);
+  /// `dag` must be valid, have voxels, and outlive this object. Throws OverMemory and Cancelled.
+  explicit EmptyRegions(const SvdagView& dag, Work work = {});
   ~EmptyRegions();
   EmptyRegions(const EmptyRegions&) = delete;
   EmptyRegions& operator=(const EmptyRegions&) = delete;
@@ -35,8 +32,7 @@ class EmptyRegions {
   void add_places(int level, std::uint32_t node, Vec3i first);
 
   std::unique_ptr<Regions> regions_;
-  MemoryBudget* memory_;
-  Progress* progress_;
+  Work work_;
   std::vector<Vec3i> places_;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "voxdag/algebra/leaf_coordinates.hpp"
 #include "voxdag/algebra/source_dag.hpp"
 
 namespace voxdag {
@@ -163,14 +162,14 @@ Svdag copy_of(const SvdagView& dag) {
 }
 
 Svdag join_neighbours(const SvdagView& dag, int steps, Neighbours neighbours, bool is_union,
-                      MemoryBudget* memory, Progress* progress) {
+                      Work work) {
   assert(steps >= 0);
   Svdag result = copy_of(dag);
   const int side = 1 << dag.levels;
   steps = std::min(steps, 3 * side);
   if (neighbours == Neighbours::k6) {
     for (int step = 0; step < steps; ++step) {
-      Svdag next = rewrite(StarRule(result.view(), is_union), dag.levels, memory, progress);
+      Svdag next = rewrite(StarRule(result.view(), is_union), dag.levels, work);
       if (next == result) break;
       result = std::move(next);
     }
@@ -181,7 +180,7 @@ Svdag join_neighbours(const SvdagView& dag, int steps, Neighbours neighbours, bo
       // Copies that are moved by reach + 1 voxels or less leave no gaps, even at the grid's sides.
       const int step = std::min({reach + 1, steps - reach, side - 1});
       result = rewrite(AxisRule(result.view(), axis, static_cast<std::uint32_t>(step), is_union),
-                       dag.levels, memory, progress);
+                       dag.levels, work);
       reach += step;
     }
   return result;
@@ -189,14 +188,12 @@ Svdag join_neighbours(const SvdagView& dag, int steps, Neighbours neighbours, bo
 
 }  // namespace
 
-Svdag dilate(const SvdagView& dag, int steps, Neighbours neighbours, MemoryBudget* memory,
-             Progress* progress) {
-  return join_neighbours(dag, steps, neighbours, true, memory, progress);
+Svdag dilate(const SvdagView& dag, int steps, Neighbours neighbours, Work work) {
+  return join_neighbours(dag, steps, neighbours, true, work);
 }
 
-Svdag erode(const SvdagView& dag, int steps, Neighbours neighbours, MemoryBudget* memory,
-            Progress* progress) {
-  return join_neighbours(dag, steps, neighbours, false, memory, progress);
+Svdag erode(const SvdagView& dag, int steps, Neighbours neighbours, Work work) {
+  return join_neighbours(dag, steps, neighbours, false, work);
 }
 
 }  // namespace voxdag

@@ -2,8 +2,7 @@
 /// Grows and shrinks bodies: dilation and erosion.
 ///
 /// Source of the operations: Serra, "Image Analysis and Mathematical Morphology", 1982.
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
@@ -17,14 +16,12 @@ enum class Neighbours {
 /// Returns the minimal DAG, in canonical order, of all voxels of the grid that are `steps` steps
 /// from neighbour to neighbour or less away from a voxel of `dag`: a cube (k26) or an octahedron
 /// (k6) around each voxel. `dag` must be valid and steps >= 0. Throws Error if the result outgrows
-/// 32-bit pointers, OverMemory and Cancelled; `memory` and `progress` may be null.
-Svdag dilate(const SvdagView& dag, int steps, Neighbours neighbours, MemoryBudget* memory = nullptr,
-             Progress* progress = nullptr);
+/// 32-bit pointers, OverMemory and Cancelled.
+Svdag dilate(const SvdagView& dag, int steps, Neighbours neighbours, Work work = {});
 
 /// Returns the minimal DAG, in canonical order, of the voxels of `dag` that are more than `steps`
 /// steps away from every place without a voxel. All places outside the grid are without voxels.
 /// See dilate() for the rest.
-Svdag erode(const SvdagView& dag, int steps, Neighbours neighbours, MemoryBudget* memory = nullptr,
-            Progress* progress = nullptr);
+Svdag erode(const SvdagView& dag, int steps, Neighbours neighbours, Work work = {});
 
 }  // namespace voxdag

@@ -40,20 +40,18 @@ std::uint64_t cell_voxels(int levels, int level) {
 
 }  // namespace
 
-Regions::Regions(const SvdagView& dag, RegionKind kind, Neighbours neighbours, MemoryBudget* memory,
-                 Progress* progress)
+Regions::Regions(const SvdagView& dag, RegionKind kind, Neighbours neighbours, Work work)
     : source_(dag),
       levels_(dag.levels),
       kind_(kind),
       neighbours_(neighbours),
-      memory_(memory),
-      progress_(progress),
-      block_voxels_(memory) {
+      work_(work),
+      block_voxels_(work.memory) {
   for (int level = 0; level <= levels_ - 2; ++level) {
-    nodes_.emplace_back(memory);
-    regions_.emplace_back(memory);
-    above_.emplace_back(memory);
-    pairs_.emplace_back(memory);
+    nodes_.emplace_back(work.memory);
+    regions_.emplace_back(work.memory);
+    above_.emplace_back(work.memory);
+    pairs_.emplace_back(work.memory);
   }
   if (dag.is_empty()) return;
   number_nodes(dag);
@@ -66,7 +64,7 @@ void Regions::number_nodes(const SvdagView& dag) {
   for (int level = 0; level < levels_ - 2; ++level) {
     const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
     level_begin_.push_back(begin);
-    CountedVector<std::uint32_t>& numbers = numbers_.emplace_back(end - begin, 0u, memory_);
+    CountedVector<std::uint32_t>& numbers = numbers_.emplace_back(end - begin, 0u, work_.memory);
     std::uint32_t number = 0;
     for (std::uint64_t word = begin; word < end;
          word += 1 + static_cast<std::uint64_t>(std::popcount(child_mask(dag.nodes + word))))
@@ -89,7 +87,7 @@ void Regions::find_blocks(const SvdagView& dag) {
   std::vector<Region> regions;
   std::vector<std::uint64_t> voxels;
   for (std::uint64_t block = 0; block < dag.leaf_block_count; ++block) {
-    poll_seldom(progress_, block);
+    work_.poll_seldom(block);
     regions.clear();
     voxels.clear();
     std::size_t open = 0;
@@ -127,7 +125,7 @@ void Regions::find_nodes(const SvdagView& dag, int level) {
   std::uint64_t polled = 0;
   for (std::uint64_t word = dag.level_begin[level]; word < dag.level_begin[level + 1];
        word += 1 + static_cast<std::uint64_t>(std::popcount(child_mask(dag.nodes + word)))) {
-    poll_seldom(progress_, polled++);
+    work_.poll_seldom(polled++);
     const auto node = static_cast<std::uint32_t>(word);
     std::uint32_t children[8], begin[9];
     members.clear();

@@ -8,13 +8,15 @@
 ///
 /// Which regions of two cells side by side touch follows from the two nodes alone, and is found by
 /// recursion over their children, once for each different pair.
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "voxdag/algebra/grow.hpp"
 #include "voxdag/algebra/source_dag.hpp"
-#include "voxdag/algebra/unique_items.hpp"
+#include "voxdag/core/parallel/work.hpp"
+#include "voxdag/stored/svdag/unique_cells.hpp"
 
 namespace voxdag {
 
@@ -25,10 +27,8 @@ enum class RegionKind { kVoxels, kEmpty };
 /// kNoCell stands for a cell without voxels.
 class Regions {
  public:
-  /// `dag` must be valid and outlive this object. Throws OverMemory and Cancelled; `memory` and
-  /// `progress` may be null.
-  Regions(const SvdagView& dag, RegionKind kind, Neighbours neighbours, MemoryBudget* memory,
-          Progress* progress);
+  /// `dag` must be valid and outlive this object. Throws OverMemory and Cancelled.
+  Regions(const SvdagView& dag, RegionKind kind, Neighbours neighbours, Work work);
 
   struct Counts {
     std::uint32_t open = 0, closed = 0;
@@ -70,7 +70,7 @@ class Regions {
   /// The pairs of nodes of a level whose touching regions are known.
   struct Pairs {
     explicit Pairs(MemoryBudget* memory) : keys(memory), lists(memory), touches(memory) {}
-    UniqueKeys<3> keys;
+    UniqueCells<std::array<std::uint32_t, 3>> keys;
     CountedVector<List> lists;
     CountedVector<Touch> touches;
   };
@@ -98,8 +98,7 @@ class Regions {
   int levels_;
   RegionKind kind_;
   Neighbours neighbours_;
-  MemoryBudget* memory_;
-  Progress* progress_;
+  Work work_;
   /// The number of the node that begins at a word, for each level above the leaf blocks.
   std::vector<CountedVector<std::uint32_t>> numbers_;
   std::vector<std::uint64_t> level_begin_;

@@ -1,6 +1,5 @@
 #include "voxdag/algebra/reorient.hpp"
 
-#include "voxdag/algebra/leaf_coordinates.hpp"
 #include "voxdag/algebra/source_dag.hpp"
 
 namespace voxdag {
@@ -71,9 +70,8 @@ Orientation then(const Orientation& first, const Orientation& second) {
   return both;
 }
 
-Svdag reorient(const SvdagView& dag, const Orientation& orientation, MemoryBudget* memory,
-               Progress* progress) {
-  return rewrite(ReorientRule(dag, orientation), dag.levels, memory, progress);
+Svdag reorient(const SvdagView& dag, const Orientation& orientation, Work work) {
+  return rewrite(ReorientRule(dag, orientation), dag.levels, work);
 }
 
 }  // namespace voxdag

@@ -1,7 +1,6 @@
 #pragma once
 /// Mirrors and rotates the voxels of a grid.
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
@@ -23,9 +22,8 @@ Orientation rotated(int axis, int quarter_turns);
 /// Returns the orientation that applies `first`, then `second`.
 Orientation then(const Orientation& first, const Orientation& second);
 
-/// Returns the minimal DAG, in canonical order, of the reoriented grid. `dag` must be valid.
-/// O(DAG) time. Throws OverMemory and Cancelled; `memory` and `progress` may be null.
-Svdag reorient(const SvdagView& dag, const Orientation& orientation, MemoryBudget* memory = nullptr,
-               Progress* progress = nullptr);
+/// Returns the minimal DAG, in canonical order, of the reoriented grid. `dag` must be valid. O(DAG)
+/// time. Throws OverMemory and Cancelled.
+Svdag reorient(const SvdagView& dag, const Orientation& orientation, Work work = {});
 
 }  // namespace voxdag

@@ -18,9 +18,9 @@
 ///   block(key)                    returns the voxels of a cell of level L-2, as a leaf block
 #include <array>
 
-#include "voxdag/algebra/unique_items.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/stored/svdag/unique_cells.hpp"
 
 namespace voxdag {
 
@@ -42,20 +42,19 @@ Svdag join_levels(int levels, const std::vector<UniqueNodes>& nodes, MemoryBudge
 template <class Rule>
 class Rewriter {
  public:
-  Rewriter(const Rule& rule, int levels, MemoryBudget* memory, Progress* progress)
-      : rule_(rule), levels_(levels), memory_(memory), progress_(progress) {}
+  Rewriter(const Rule& rule, int levels, Work work) : rule_(rule), levels_(levels), work_(work) {}
 
   Svdag run() {
     const Key root = rule_.root();
     Svdag empty;
     empty.levels = levels_;
     if (root == kEmpty) return empty;
-    CountedVector<Key> keys(1, root, memory_);
+    CountedVector<Key> keys(1, root, work_.memory);
     for (int level = 0; level < levels_ - 2; ++level) keys = find_keys_below(level, keys);
-    for (int level = 0; level < levels_ - 1; ++level) nodes_.emplace_back(memory_);
+    for (int level = 0; level < levels_ - 1; ++level) nodes_.emplace_back(work_.memory);
     CountedVector<std::uint32_t> places = add_blocks(keys);
     for (int level = levels_ - 3; level >= 0; --level) places = add_nodes(level, places);
-    return places[0] == kNoCell ? empty : join_levels(levels_, nodes_, memory_);
+    return places[0] == kNoCell ? empty : join_levels(levels_, nodes_, work_.memory);
   }
 
  private:
@@ -65,10 +64,10 @@ class Rewriter {
 
   /// Returns the different keys of the children, and notes which child has which.
   CountedVector<Key> find_keys_below(int level, const CountedVector<Key>& keys) {
-    UniqueKeys<kWords> below(memory_);
-    CountedVector<std::uint32_t>& links = links_.emplace_back(memory_);
+    UniqueCells<Key> below(work_.memory);
+    CountedVector<std::uint32_t>& links = links_.emplace_back(work_.memory);
     for (std::size_t i = 0; i < keys.size(); ++i) {
-      poll_seldom(progress_, i);
+      work_.poll_seldom(i);
       Key children[8];
       rule_.children(level, keys[i], children);
       const std::size_t place = links.size();
@@ -84,10 +83,10 @@ class Rewriter {
 
   /// Returns where the block of each key is; kNoCell if it has no voxels.
   CountedVector<std::uint32_t> add_blocks(const CountedVector<Key>& keys) {
-    CountedVector<std::uint32_t> places(memory_);
+    CountedVector<std::uint32_t> places(work_.memory);
     places.reserve(keys.size());
     for (std::size_t i = 0; i < keys.size(); ++i) {
-      poll_seldom(progress_, i);
+      work_.poll_seldom(i);
       const std::uint64_t block = rule_.block(keys[i]);
       const std::uint32_t words[] = {static_cast<std::uint32_t>(block),
                                      static_cast<std::uint32_t>(block >> 32)};
@@ -100,9 +99,9 @@ class Rewriter {
   CountedVector<std::uint32_t> add_nodes(int level, const CountedVector<std::uint32_t>& below) {
     CountedVector<std::uint32_t>& links = links_[static_cast<std::size_t>(level)];
     UniqueNodes& nodes = nodes_[static_cast<std::size_t>(level)];
-    CountedVector<std::uint32_t> places(memory_);
+    CountedVector<std::uint32_t> places(work_.memory);
     for (std::size_t i = 0; i < links.size();) {
-      poll_seldom(progress_, i);
+      work_.poll_seldom(i);
       const std::uint32_t candidates = links[i++];
       std::array<std::uint32_t, 9> words{};
       std::size_t size = 1;
@@ -115,14 +114,13 @@ class Rewriter {
       }
       places.push_back(size == 1 ? kNoCell : nodes.add(words.data(), size));
     }
-    CountedVector<std::uint32_t>(memory_).swap(links);
+    CountedVector<std::uint32_t>(work_.memory).swap(links);
     return places;
   }
 
   const Rule& rule_;
   int levels_;
-  MemoryBudget* memory_;
-  Progress* progress_;
+  Work work_;
   /// For each key of a level: a mask, then the number of the key of each child in the mask.
   std::vector<CountedVector<std::uint32_t>> links_;
   std::vector<UniqueNodes> nodes_;  ///< Of each level, the leaf blocks last.
@@ -132,10 +130,10 @@ class Rewriter {
 
 /// Returns the minimal DAG, in canonical order, of a grid of `levels` levels that follows `rule`.
 /// O(different keys) time and memory. Throws Error if a level has too many keys or nodes for 32-bit
-/// numbers, OverMemory and Cancelled; `memory` and `progress` may be null.
+/// numbers, OverMemory and Cancelled.
 template <class Rule>
-Svdag rewrite(const Rule& rule, int levels, MemoryBudget* memory, Progress* progress) {
-  return detail::Rewriter<Rule>(rule, levels, memory, progress).run();
+Svdag rewrite(const Rule& rule, int levels, Work work) {
+  return detail::Rewriter<Rule>(rule, levels, work).run();
 }
 
 }  // namespace voxdag

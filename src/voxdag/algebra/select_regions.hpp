@@ -5,6 +5,7 @@
 
 #include "voxdag/algebra/regions.hpp"
 #include "voxdag/algebra/rewrite.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -105,9 +106,8 @@ class SelectRule {
 };
 
 template <class Selection>
-Svdag select_regions(const Regions& regions, const Selection& selection, MemoryBudget* memory,
-                     Progress* progress) {
-  return rewrite(SelectRule<Selection>(regions, selection), regions.levels(), memory, progress);
+Svdag select_regions(const Regions& regions, const Selection& selection, Work work) {
+  return rewrite(SelectRule<Selection>(regions, selection), regions.levels(), work);
 }
 
 }  // namespace voxdag

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "voxdag/algebra/leaf_coordinates.hpp"
 #include "voxdag/algebra/source_dag.hpp"
 
 namespace voxdag {
@@ -103,10 +102,9 @@ class ShiftRule {
 
 }  // namespace
 
-Svdag shift(const SvdagView& dag, Vec3i offset, int levels, MemoryBudget* memory,
-            Progress* progress) {
+Svdag shift(const SvdagView& dag, Vec3i offset, int levels, Work work) {
   assert(levels >= kMinLevels && levels <= kMaxLevels);
-  return rewrite(ShiftRule(dag, offset, levels), levels, memory, progress);
+  return rewrite(ShiftRule(dag, offset, levels), levels, work);
 }
 
 }  // namespace voxdag

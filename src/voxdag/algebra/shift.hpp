@@ -1,7 +1,6 @@
 #pragma once
 /// Moves voxels in their grid.
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
@@ -11,8 +10,7 @@ namespace voxdag {
 /// `offset` is set if voxel p of `dag` is set. Voxels that would lie outside the grid are left out.
 /// `levels` may be more or less than the DAG's. `dag` must be valid. Each different cell depends on
 /// up to eight nodes. Throws Error if the result outgrows 32-bit pointers, OverMemory and
-/// Cancelled; `memory` and `progress` may be null.
-Svdag shift(const SvdagView& dag, Vec3i offset, int levels, MemoryBudget* memory = nullptr,
-            Progress* progress = nullptr);
+/// Cancelled.
+Svdag shift(const SvdagView& dag, Vec3i offset, int levels, Work work = {});
 
 }  // namespace voxdag

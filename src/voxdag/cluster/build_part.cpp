@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "voxdag/algebra/combine.hpp"
-#include "voxdag/builders/dag/build_range.hpp"
+#include "voxdag/builders/dag/build_methods.hpp"
 #include "voxdag/cluster/part_file.hpp"
 
 namespace voxdag {
@@ -15,13 +15,12 @@ constexpr int kFinestPieces = 10;
 class PartBuilder {
  public:
   PartBuilder(std::span<const TriangleSegment> segments, int levels, WorkFileWriter& file,
-              MemoryBudget& budget, Progress* progress)
+              Work work)
       : segments_(segments),
         levels_(levels),
         cell_level_(segment_cell_level(levels)),
         file_(file),
-        budget_(budget),
-        progress_(progress) {}
+        work_(work) {}
 
   /// Builds a range, or halves of it if there is too little memory.
   void build(const CellRange& range) {
@@ -53,11 +52,11 @@ class PartBuilder {
     Position position;
     std::uint64_t triangles = 0;
     Svdag dag = build_batch(range, position, triangles);
-    MemoryReservation held(&budget_, dag.view().bytes());
+    MemoryReservation held(work_.memory, dag.view().bytes());
     while (position.segment < segments_.size()) {
       const Svdag more = build_batch(range, position, triangles);
-      const MemoryReservation more_held(&budget_, more.view().bytes());
-      Svdag both = combine(dag.view(), more.view(), SetOperation::kUnion, &budget_, progress_);
+      const MemoryReservation more_held(work_.memory, more.view().bytes());
+      Svdag both = combine(dag.view(), more.view(), SetOperation::kUnion, work_);
       dag = std::move(both);
       held.resize(dag.view().bytes());
     }
@@ -72,35 +71,34 @@ class PartBuilder {
     // A triangle, the table of duplicates and its lists. The DAG takes the rest.
     constexpr std::uint64_t kBytes = 120;
     const std::uint64_t most =
-        std::clamp<std::uint64_t>(budget_.left() / 3 / kBytes, 1024, std::uint64_t{1} << 26);
-    CountedVector<QuantizedTriangle> batch{CountedAllocator<QuantizedTriangle>(&budget_)};
+        std::clamp<std::uint64_t>(work_.memory->left() / 3 / kBytes, 1024, std::uint64_t{1} << 26);
+    CountedVector<QuantizedTriangle> batch{CountedAllocator<QuantizedTriangle>(work_.memory)};
     std::uint64_t entries = 0;
     for (std::size_t s = position.segment; s < segments_.size() && entries < most; ++s)
       entries += segments_[s].entries_in(range, cell_level_);
     batch.reserve(std::min(entries, most));
     while (position.segment < segments_.size() && batch.size() < most) {
       const TriangleSegment::Taken taken = segments_[position.segment].take(
-          range, cell_level_, position.passed, most, batch, &budget_);
+          range, cell_level_, position.passed, most, batch, work_.memory);
       position.passed = taken.passed;
       if (taken.is_all) position = {position.segment + 1, 0};
     }
     triangles += batch.size();
-    return build_range(std::move(batch), levels_, range, &budget_, progress_);
+    return build_range(std::move(batch), levels_, range, work_);
   }
 
   std::span<const TriangleSegment> segments_;
   int levels_, cell_level_;
   WorkFileWriter& file_;
-  MemoryBudget& budget_;
-  Progress* progress_;
+  Work work_;
   PartCounts counts_;
 };
 
 }  // namespace
 
 PartCounts build_part(std::span<const TriangleSegment> segments, int levels, const CellRange& range,
-                      WorkFileWriter& file, MemoryBudget& budget, Progress* progress) {
-  PartBuilder builder(segments, levels, file, budget, progress);
+                      WorkFileWriter& file, Work work) {
+  PartBuilder builder(segments, levels, file, work);
   builder.build(range);
   return builder.counts();
 }

@@ -5,7 +5,7 @@
 #include "voxdag/cluster/triangle_segments.hpp"
 #include "voxdag/cluster/work_file.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -19,6 +19,6 @@ struct PartCounts {
 /// the budget, it goes on with smaller pieces, and takes the triangles of one cell in batches.
 /// Throws OverMemory if the smallest piece does not fit, Error and Cancelled.
 PartCounts build_part(std::span<const TriangleSegment> segments, int levels, const CellRange& range,
-                      WorkFileWriter& file, MemoryBudget& budget, Progress* progress);
+                      WorkFileWriter& file, Work work);
 
 }  // namespace voxdag

@@ -1,16 +1,83 @@
 #include "voxdag/cluster/join_ranks.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
 #include <cassert>
+#include <cerrno>
 #include <cstdlib>
 #include <string>
+#include <system_error>
 
 #include "voxdag/cluster/mpi/mpi_module.hpp"
-#include "voxdag/cluster/one_rank.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/descriptor.hpp"
 #include "voxdag/core/io/load_module.hpp"
 
 namespace voxdag {
 namespace {
+
+class LocalFile final : public RankFile {
+ public:
+  explicit LocalFile(const std::filesystem::path& path)
+      : path_(path), descriptor_(::open(path.c_str(), O_WRONLY | O_CLOEXEC)) {
+    if (!descriptor_.is_open()) fail(0, "cannot open: ");
+  }
+
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    while (!bytes.empty()) {
+      const ssize_t written =
+          ::pwrite(descriptor_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail(offset, "cannot write: ");
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+      offset += static_cast<std::uint64_t>(written);
+    }
+  }
+
+  void close() override {
+    // Some file systems (NFS, quotas) report a failed write only here.
+    if (::close(descriptor_.release()) != 0) fail(0, "cannot write: ");
+  }
+
+ private:
+  [[noreturn]] void fail(std::uint64_t offset, const char* what) const {
+    throw Error(path_.string(), ErrorPlace::byte(offset),
+                what + std::system_category().message(errno));
+  }
+
+  std::filesystem::path path_;
+  Descriptor descriptor_;
+};
+
+/// A job of one process.
+class OneRank final : public Ranks {
+ public:
+  int rank() const override { return 0; }
+  int count() const override { return 1; }
+  void barrier() override {}
+  std::vector<std::uint64_t> all_gather(std::span<const std::uint64_t> values) override {
+    return {values.begin(), values.end()};
+  }
+  void broadcast(std::vector<std::byte>&) override {}
+  std::vector<std::vector<std::byte>> exchange(
+      std::vector<std::vector<std::byte>> outgoing) override {
+    return outgoing;
+  }
+  std::uint64_t next(int counter) override { return counters_[counter]++; }
+  void reset(int counter) override { counters_[counter] = 0; }
+  std::unique_ptr<RankFile> open_file(const std::filesystem::path& path) override {
+    return std::make_unique<LocalFile>(path);
+  }
+  bool fails_first() override { return true; }
+  [[noreturn]] void abort(int status) override { ::_exit(status); }
+  std::uint64_t bytes_sent() const override { return 0; }
+
+ private:
+  std::array<std::atomic<std::uint64_t>, kCounters> counters_{};
+};
 
 /// Returns the number in an environment variable; 0 if it is not set.
 int number_in(const char* variable) {
@@ -39,7 +106,7 @@ int launched_count() {
 
 }  // namespace
 
-std::unique_ptr<Ranks> join_ranks(const Progress* progress, const RankOptions& options) {
+std::unique_ptr<Ranks> join_ranks(Work work, const RankOptions& options) {
   assert(options.message_bytes >= 1 && options.message_bytes <= std::uint64_t{1} << 30);
   if (!is_launched()) {
     // srun without PMI, which is its default.
@@ -56,7 +123,7 @@ std::unique_ptr<Ranks> join_ranks(const Progress* progress, const RankOptions& o
         "mpirun or srun started this process, but the module for MPI cannot be loaded. Build "
         "voxdag where MPI is installed (Debian: libopenmpi-dev): " +
         reason);
-  std::unique_ptr<Ranks> ranks(module->join(progress, options));
+  std::unique_ptr<Ranks> ranks(module->join(work, options));
   const int launched = launched_count();
   if (launched != 0 && ranks->count() != launched)
     throw Error("the launcher started " + std::to_string(launched) +

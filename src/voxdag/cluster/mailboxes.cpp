@@ -129,7 +129,9 @@ std::uint32_t mailboxes_of(Ranks& ranks, std::uint64_t bytes, const MemoryBudget
                  tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))),
              count = static_cast<std::uint64_t>(ranks.count());
   const std::uint64_t needed = bytes / std::max<std::uint64_t>(left / 4 / threads, 1) + 1;
-  const std::uint64_t wanted = std::max({count, needed, bytes < kLittle ? 1 : 2 * count * threads});
+  // So a mailbox has fewer than 2^32 different records, if each counts for 16 bytes or more.
+  const std::uint64_t least = std::max(count, bytes >> 36);
+  const std::uint64_t wanted = std::max({least, needed, bytes < kLittle ? 1 : 2 * count * threads});
   if (needed > kMaxMailboxes && needed > count)
     budget.throw_over_memory(budget.base() + budget.used() + bytes / kMaxMailboxes * 4 * threads);
   return static_cast<std::uint32_t>(wanted);

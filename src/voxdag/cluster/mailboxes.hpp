@@ -73,16 +73,14 @@ class Mailboxes {
   std::vector<std::vector<std::byte>> outgoing_;  ///< By rank.
 };
 
-/// Calls body(mailbox) for the mailboxes of a rank, on all threads. Throws Cancelled; `progress`
-/// may be null.
+/// Calls body(mailbox) for the mailboxes of a rank, on all threads. Throws Cancelled.
 template <class Body>
-void for_each_own(const Ranks& ranks, std::uint32_t mailboxes, const Progress* progress,
-                  const Body& body) {
+void for_each_own(const Ranks& ranks, std::uint32_t mailboxes, Work work, const Body& body) {
   const auto rank = static_cast<std::uint32_t>(ranks.rank()),
              count = static_cast<std::uint32_t>(ranks.count());
   const std::uint32_t own = mailboxes > rank ? (mailboxes - rank - 1) / count + 1 : 0;
   parallel_for(own, [&](std::size_t i) {
-    poll(progress);
+    work.poll();
     body(rank + static_cast<std::uint32_t>(i) * count);
   });
 }

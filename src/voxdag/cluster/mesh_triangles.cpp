@@ -14,19 +14,19 @@ constexpr const char *kSegmentFolder = "triangles", *kFacts = "triangles/mesh";
 
 /// Writes the segments that the folder lacks, shared among the ranks. Collective.
 void write_segments(const MeshJob& job, const SharedMesh& mesh, const MeshFacts& facts) {
-  Progress* const progress = job.reading.progress;
+  const Work work = job.reading.work;
   make_missing(job.ranks, job.folder, {kSegmentCounter, facts.segments, segment_name, "triangles"},
-               progress, [&](std::uint64_t s) {
+               work, [&](std::uint64_t s) {
                  const std::uint64_t first = s * facts.triangles_per_segment;
                  write_segment(job.folder, s, mesh, facts.grid, first,
                                std::min(first + facts.triangles_per_segment, facts.triangles),
-                               *job.reading.memory, progress);
+                               work);
                  mesh.release();
                });
 }
 
 bool has_facts(const MeshJob& job) {
-  const std::uint64_t has = job.ranks.rank() == 0 && job.folder.open(kFacts, job.reading.progress);
+  const std::uint64_t has = job.ranks.rank() == 0 && job.folder.open(kFacts, job.reading.work);
   return job.ranks.all_gather({&has, 1})[0] != 0;
 }
 
@@ -44,7 +44,7 @@ Grid grid_of(const MeshJob& job, const Box3d& bounds) {
 }
 
 MeshFacts stored_facts(const MeshJob& job) {
-  return job.folder.open_seen(kFacts, job.reading.progress).values<MeshFacts>()[0];
+  return job.folder.open_seen(kFacts, job.reading.work).values<MeshFacts>()[0];
 }
 
 /// Returns whether a segment is missing or damaged. Collective.
@@ -52,7 +52,7 @@ bool lacks_segments(const MeshJob& job, std::uint64_t segments) {
   std::uint64_t lacks = 0;
   for (auto s = static_cast<std::uint64_t>(job.ranks.rank()); s < segments && lacks == 0;
        s += static_cast<std::uint64_t>(job.ranks.count()))
-    lacks = job.folder.open(segment_name(s), job.reading.progress) ? 0 : 1;
+    lacks = job.folder.open(segment_name(s), job.reading.work) ? 0 : 1;
   const std::vector<std::uint64_t> all = job.ranks.all_gather({&lacks, 1});
   return std::find(all.begin(), all.end(), 1) != all.end();
 }
@@ -66,7 +66,7 @@ MeshFacts mesh_facts(const MeshJob& job) {
   facts.grid = grid_of(job, mesh.used_bounds());
   facts.vertices = mesh.count_vertices();
   facts.triangles = mesh.triangles().size();
-  const std::uint64_t per_segment = segment_triangles(*job.reading.memory);
+  const std::uint64_t per_segment = segment_triangles(*job.reading.work.memory);
   facts.triangles_per_segment = job.ranks.all_gather({&per_segment, 1})[0];
   facts.segments =
       (facts.triangles + facts.triangles_per_segment - 1) / facts.triangles_per_segment;
@@ -90,7 +90,7 @@ std::vector<TriangleSegment> mesh_segments(const MeshJob& job, const MeshFacts& 
   if (job.ranks.rank() == 0) job.folder.remove(kMeshFolder);
   std::vector<TriangleSegment> segments;
   for (std::uint64_t s = 0; s < facts.segments; ++s)
-    segments.emplace_back(job.folder.open_seen(segment_name(s), job.reading.progress));
+    segments.emplace_back(job.folder.open_seen(segment_name(s), job.reading.work));
   return segments;
 }
 

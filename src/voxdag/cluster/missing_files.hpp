@@ -4,12 +4,20 @@
 #include <functional>
 #include <string>
 
-#include "voxdag/cluster/job_counters.hpp"
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
+
+/// The shared counters (Ranks::next) from which the steps of a job take their tasks.
+enum JobCounter : int {
+  kMeshCountsCounter,
+  kMeshVerticesCounter,
+  kMeshTrianglesCounter,
+  kSegmentCounter,
+  kPartCounter
+};
 
 /// The numbered files of one step.
 struct StepFiles {
@@ -22,17 +30,15 @@ struct StepFiles {
 
 /// Calls make(number) for the files from 0 to count - 1 that are missing or damaged; it must write
 /// the file. Each rank takes one number after the other. Waits until all files are there.
-/// Collective; `progress` may be null. Throws Cancelled and what make() throws.
+/// Collective. Throws Cancelled and what make() throws.
 template <class Make>
-void make_missing(Ranks& ranks, const WorkFolder& folder, const StepFiles& files,
-                  Progress* progress, const Make& make) {
+void make_missing(Ranks& ranks, const WorkFolder& folder, const StepFiles& files, Work work,
+                  const Make& make) {
   ranks.reset(files.counter);
   for (std::uint64_t number; (number = ranks.next(files.counter)) < files.count;) {
-    poll(progress);
-    if (progress != nullptr)
-      progress->report(files.stage, static_cast<double>(number) / static_cast<double>(files.count),
-                       number);
-    if (!folder.open(files.name(number), progress, files.check)) make(number);
+    work.poll();
+    work.report_done(files.stage, number, files.count);
+    if (!folder.open(files.name(number), work, files.check)) make(number);
   }
   ranks.barrier();
 }

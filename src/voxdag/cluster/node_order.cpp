@@ -47,10 +47,10 @@ class NodeOrder {
   /// Writes level 0: the root alone.
   void begin(std::uint64_t root) {
     const auto root_box = static_cast<std::uint32_t>(root % job_.mailboxes);
-    Mailboxes mail(job_.ranks, job_.folder, name_of("order", 0), job_.mailboxes, job_.budget);
+    Mailboxes mail(job_.ranks, job_.folder, name_of("order", 0), job_.mailboxes, *job_.work.memory);
     for_each_own(mail, [&](std::uint32_t box, Mailboxes::Sender& sender) {
       if (box != root_box) return;
-      const WorkFile file = job_.folder.open_written(merged_name(0, box), job_.progress);
+      const WorkFile file = job_.folder.open_written(merged_name(0, box), job_.work);
       const std::byte* at = file.bytes().data();
       for (std::uint64_t number = root / job_.mailboxes; number > 0; --number)
         at += record_bytes(at, leaf_level_ == 0);
@@ -81,9 +81,9 @@ class NodeOrder {
   /// Writes the leaf blocks.
   void finish() {
     for_each_own([&](std::uint32_t box) {
-      const WorkFile file = job_.folder.open_written(order_name(leaf_level_, box), job_.progress);
+      const WorkFile file = job_.folder.open_written(order_name(leaf_level_, box), job_.work);
       WorkFileWriter out = job_.folder.create(words_name(leaf_level_, box));
-      for_each_node(file, true, job_.progress, [&](const OrderedNode&, const std::byte* record) {
+      for_each_node(file, true, job_.work, [&](const OrderedNode&, const std::byte* record) {
         out.write({record, kLeafRecordBytes});
       });
       out.commit();
@@ -95,7 +95,7 @@ class NodeOrder {
   /// Calls body(mailbox) for the mailboxes of this rank, on all threads.
   template <class Body>
   void for_each_own(const Body& body) {
-    voxdag::for_each_own(job_.ranks, job_.mailboxes, job_.progress, body);
+    voxdag::for_each_own(job_.ranks, job_.mailboxes, job_.work, body);
   }
   /// Calls body(mailbox, sender).
   template <class Body>
@@ -111,7 +111,7 @@ class NodeOrder {
   void for_each_message(const WorkFile& file, const Body& body) {
     const std::span<const T> all = file.values<T>();
     for (std::size_t i = 0; i < all.size(); ++i) {
-      poll_seldom(job_.progress, i);
+      job_.work.poll_seldom(i);
       if ((i & 0xFFFFF) == 0xFFFFF) file.release(i * sizeof(T));
       body(all[i]);
     }
@@ -123,18 +123,17 @@ class NodeOrder {
   }
 
   void send_references(int level, const LevelRuns& runs, const std::string& name) {
-    Mailboxes mail(job_.ranks, job_.folder, name, job_.mailboxes, job_.budget);
+    Mailboxes mail(job_.ranks, job_.folder, name, job_.mailboxes, *job_.work.memory);
     for_each_own(mail, [&](std::uint32_t box, Mailboxes::Sender& sender) {
-      const WorkFile file = job_.folder.open_written(order_name(level, box), job_.progress);
+      const WorkFile file = job_.folder.open_written(order_name(level, box), job_.work);
       std::uint64_t position = runs.first_reference[box];
-      for_each_node(file, false, job_.progress,
-                    [&](const OrderedNode& node, const std::byte* record) {
-                      for (int i = 0; i < record_ids(record, false); ++i) {
-                        const std::uint64_t id = record_id(record, i);
-                        sender.send_value(static_cast<std::uint32_t>(id % job_.mailboxes),
-                                          Reference{id / job_.mailboxes, position++, node.copies});
-                      }
-                    });
+      for_each_node(file, false, job_.work, [&](const OrderedNode& node, const std::byte* record) {
+        for (int i = 0; i < record_ids(record, false); ++i) {
+          const std::uint64_t id = record_id(record, i);
+          sender.send_value(static_cast<std::uint32_t>(id % job_.mailboxes),
+                            Reference{id / job_.mailboxes, position++, node.copies});
+        }
+      });
     });
     mail.close();
   }
@@ -143,18 +142,18 @@ class NodeOrder {
   void send_firsts(int level, const LevelRuns& runs, const std::string& references,
                    const std::string& firsts) {
     constexpr std::uint64_t kNever = ~std::uint64_t{0};
-    Mailboxes mail(job_.ranks, job_.folder, firsts, job_.mailboxes, job_.budget);
+    Mailboxes mail(job_.ranks, job_.folder, firsts, job_.mailboxes, *job_.work.memory);
     const bool is_leaf = level + 1 == leaf_level_;
     for_each_own(mail, [&](std::uint32_t box, Mailboxes::Sender& sender) {
-      const WorkFile nodes = job_.folder.open_written(merged_name(level + 1, box), job_.progress);
-      PageVector<std::uint64_t> first(&job_.budget), copies(&job_.budget);
+      const WorkFile nodes = job_.folder.open_written(merged_name(level + 1, box), job_.work);
+      PageVector<std::uint64_t> first(job_.work.memory), copies(job_.work.memory);
       const std::byte* at = nodes.bytes().data();
       const std::byte* const end = at + nodes.bytes().size();
       for (; at != end; at += record_bytes(at, is_leaf)) first.push_back(kNever);
       copies.resize(first.size());
       std::fill(copies.begin(), copies.end(), 0);
       for_each_message<Reference>(
-          job_.folder.open_written(mailbox_name(references, box), job_.progress),
+          job_.folder.open_written(mailbox_name(references, box), job_.work),
           [&](const Reference& reference) {
             first[reference.number] = std::min(first[reference.number], reference.position);
             copies[reference.number] += reference.copies;
@@ -180,10 +179,10 @@ class NodeOrder {
       std::uint64_t position, begin;
     };
     const bool is_leaf = level == leaf_level_;
-    Mailboxes mail(job_.ranks, job_.folder, places, job_.mailboxes, job_.budget);
+    Mailboxes mail(job_.ranks, job_.folder, places, job_.mailboxes, *job_.work.memory);
     for_each_own(mail, [&](std::uint32_t box, Mailboxes::Sender& sender) {
-      const WorkFile file = job_.folder.open_written(mailbox_name(firsts, box), job_.progress);
-      PageVector<Entry> entries(&job_.budget);
+      const WorkFile file = job_.folder.open_written(mailbox_name(firsts, box), job_.work);
+      PageVector<Entry> entries(job_.work.memory);
       const std::byte* const begin = file.bytes().data();
       for (const std::byte *at = begin, *end = at + file.bytes().size(); at != end;) {
         const std::byte* const message = at;
@@ -196,7 +195,7 @@ class NodeOrder {
       WorkFileWriter out = job_.folder.create(order_name(level, box));
       std::uint64_t place = 0;
       for (std::size_t i = 0; i < entries.size(); ++i) {
-        poll_seldom(job_.progress, i);
+        job_.work.poll_seldom(i);
         const std::byte* at = begin + entries[i].begin;
         const auto head = take_value<FirstReference>(at);
         out.write_value(OrderedNode{head.copies});
@@ -214,15 +213,15 @@ class NodeOrder {
   /// Sends the place of each child to the run that refers to it.
   void answer_references(int, const LevelRuns& runs, const std::string& references,
                          const std::string& places, const std::string& placed) {
-    Mailboxes mail(job_.ranks, job_.folder, placed, job_.mailboxes, job_.budget);
+    Mailboxes mail(job_.ranks, job_.folder, placed, job_.mailboxes, *job_.work.memory);
     for_each_own(mail, [&](std::uint32_t box, Mailboxes::Sender& sender) {
-      PageVector<std::uint64_t> place_of(&job_.budget);
-      const WorkFile answers = job_.folder.open_written(mailbox_name(places, box), job_.progress);
+      PageVector<std::uint64_t> place_of(job_.work.memory);
+      const WorkFile answers = job_.folder.open_written(mailbox_name(places, box), job_.work);
       place_of.resize(answers.values<Place>().size());
       for_each_message<Place>(answers,
                               [&](const Place& place) { place_of[place.number] = place.place; });
       for_each_message<Reference>(
-          job_.folder.open_written(mailbox_name(references, box), job_.progress),
+          job_.folder.open_written(mailbox_name(references, box), job_.work),
           [&](const Reference& reference) {
             const auto run = std::upper_bound(runs.first_reference.begin(),
                                               runs.first_reference.end() - 1, reference.position) -
@@ -241,20 +240,20 @@ class NodeOrder {
       throw Error(
           "the DAG is too large: one level has more words than 35-bit pointers can address");
     for_each_own([&](std::uint32_t box) {
-      PageVector<std::uint64_t> pointers(&job_.budget);
+      PageVector<std::uint64_t> pointers(job_.work.memory);
       const std::uint64_t first = runs.first_reference[box];
       pointers.resize(runs.first_reference[box + 1] - first);
       for_each_message<PlacedReference>(
-          job_.folder.open_written(mailbox_name(placed, box), job_.progress),
+          job_.folder.open_written(mailbox_name(placed, box), job_.work),
           [&](const PlacedReference& reference) {
             const std::uint64_t run = reference.place >> kPlaceBits,
                                 place = reference.place & ((std::uint64_t{1} << kPlaceBits) - 1);
             pointers[reference.position - first] = below.first_place[run] + place;
           });
-      const WorkFile file = job_.folder.open_written(order_name(level, box), job_.progress);
+      const WorkFile file = job_.folder.open_written(order_name(level, box), job_.work);
       WorkFileWriter out = job_.folder.create(words_name(level, box));
       std::uint64_t next = 0;
-      for_each_node(file, false, job_.progress, [&](const OrderedNode&, const std::byte* record) {
+      for_each_node(file, false, job_.work, [&](const OrderedNode&, const std::byte* record) {
         std::uint32_t words[9] = {static_cast<std::uint32_t>(*record)};
         std::size_t size = 1;
         for (std::uint32_t left = words[0]; left != 0; left &= left - 1) {
@@ -299,7 +298,7 @@ OrderedDag order_nodes(const MergeJob& job, const MergedNodes& merged) {
   run_once("order-0", [&] { order.begin(merged.root); });
   for (int level = 0; level <= leaf_level; ++level) {
     run_once("order-" + std::to_string(level + 1), [&] {
-      if (job.progress != nullptr) job.progress->report("number", level / (leaf_level + 1.0));
+      job.work.report("number", level / (leaf_level + 1.0));
       level == leaf_level ? order.finish() : order.advance(level);
     });
     const LevelRuns runs = runs_of(job, level);

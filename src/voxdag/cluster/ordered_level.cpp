@@ -39,15 +39,14 @@ LevelRuns runs_of(const MergeJob& job, int level) {
   const bool is_leaf = level == job.levels - 2;
   // Per mailbox: nodes, references, copies.
   std::vector<std::uint64_t> mine(3 * most_own(job));
-  for_each_own(job.ranks, job.mailboxes, job.progress, [&](std::uint32_t box) {
-    const WorkFile file = job.folder.open_written(order_name(level, box), job.progress);
+  for_each_own(job.ranks, job.mailboxes, job.work, [&](std::uint32_t box) {
+    const WorkFile file = job.folder.open_written(order_name(level, box), job.work);
     std::uint64_t nodes = 0, references = 0, copies = 0;
-    for_each_node(file, is_leaf, job.progress,
-                  [&](const OrderedNode& node, const std::byte* record) {
-                    ++nodes;
-                    copies += node.copies;
-                    references += static_cast<std::uint64_t>(record_ids(record, is_leaf));
-                  });
+    for_each_node(file, is_leaf, job.work, [&](const OrderedNode& node, const std::byte* record) {
+      ++nodes;
+      copies += node.copies;
+      references += static_cast<std::uint64_t>(record_ids(record, is_leaf));
+    });
     const std::uint64_t values[] = {nodes, references, copies};
     std::copy_n(values, 3, &mine[3 * own_index(job, box)]);
   });
@@ -72,10 +71,10 @@ void count_leaves(const MergeJob& job, SvdagCounts& counts) {
   // Copies of octants, voxels, and a bit for each octant that occurs.
   std::vector<std::uint64_t> mine(2 + 4);
   std::mutex mutex;
-  for_each_own(job.ranks, job.mailboxes, job.progress, [&](std::uint32_t box) {
+  for_each_own(job.ranks, job.mailboxes, job.work, [&](std::uint32_t box) {
     std::uint64_t sums[2] = {}, bits[4] = {};
-    const WorkFile file = job.folder.open_written(order_name(job.levels - 2, box), job.progress);
-    for_each_node(file, true, job.progress, [&](const OrderedNode& node, const std::byte* record) {
+    const WorkFile file = job.folder.open_written(order_name(job.levels - 2, box), job.work);
+    for_each_node(file, true, job.work, [&](const OrderedNode& node, const std::byte* record) {
       std::uint64_t block;
       std::memcpy(&block, record, sizeof block);
       sums[0] +=

@@ -10,6 +10,7 @@
 #include "voxdag/cluster/mailboxes.hpp"
 #include "voxdag/cluster/node_record.hpp"
 #include "voxdag/cluster/part_merge.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag {
@@ -48,12 +49,12 @@ T take_value(const std::byte*& at) {
 /// Calls body(OrderedNode, record) for the nodes of a run, and drops pages that it has read.
 /// Throws Cancelled.
 template <class Body>
-void for_each_node(const WorkFile& file, bool is_leaf, const Progress* progress, const Body& body) {
+void for_each_node(const WorkFile& file, bool is_leaf, Work work, const Body& body) {
   constexpr std::uint64_t kRelease = std::uint64_t{1} << 20;
   const std::byte* at = file.bytes().data();
   const std::byte* const end = at + file.bytes().size();
   for (std::uint64_t count = 1; at != end; ++count) {
-    poll_seldom(progress, count);
+    work.poll_seldom(count);
     if (count % kRelease == 0) file.release(static_cast<std::size_t>(at - file.bytes().data()));
     const auto node = take_value<OrderedNode>(at);
     body(node, at);

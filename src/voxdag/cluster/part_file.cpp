@@ -56,7 +56,7 @@ const PartFile& PartFiles::get(std::uint64_t part) {
     const auto found = open_.find(part);
     if (found != open_.end()) return found->second;
   }
-  WorkFile file = folder_.open_written(part_name(part), progress_);
+  WorkFile file = folder_.open_written(part_name(part), work_);
   std::vector<PartPiece> pieces = read_pieces(file);
   const std::lock_guard guard(mutex_);
   return open_.emplace(part, PartFile{std::move(file), std::move(pieces)}).first->second;

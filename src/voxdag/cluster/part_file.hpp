@@ -13,6 +13,7 @@
 
 #include "voxdag/builders/voxelize/cell_range.hpp"
 #include "voxdag/cluster/work_folder.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
@@ -39,9 +40,9 @@ struct PartFile {
 /// Thread-safe.
 class PartFiles {
  public:
-  /// Refers to `folder`, and to `progress`, which may be null.
-  PartFiles(const WorkFolder& folder, std::uint64_t count, const Progress* progress)
-      : folder_(folder), count_(count), progress_(progress) {}
+  /// Refers to `folder`.
+  PartFiles(const WorkFolder& folder, std::uint64_t count, Work work)
+      : folder_(folder), count_(count), work_(work) {}
 
   std::uint64_t count() const { return count_; }
   /// Throws Error if the part is missing or damaged, and Cancelled.
@@ -50,7 +51,7 @@ class PartFiles {
  private:
   const WorkFolder& folder_;
   std::uint64_t count_;
-  const Progress* progress_;
+  Work work_;
   std::mutex mutex_;
   std::map<std::uint64_t, PartFile> open_;
 };

@@ -74,7 +74,7 @@ class LevelMerge {
     ask(questions);
     intern(questions, answers);
     collect(answers, cells);
-    voxdag::for_each_own(job_.ranks, job_.mailboxes, nullptr, [&](std::uint32_t box) {
+    voxdag::for_each_own(job_.ranks, job_.mailboxes, {}, [&](std::uint32_t box) {
       job_.folder.remove(mailbox_name(questions, box));
       job_.folder.remove(mailbox_name(answers, box));
       job_.folder.remove(mailbox_name(cells, box));
@@ -85,7 +85,7 @@ class LevelMerge {
   /// Calls body(mailbox, sender) for the mailboxes of this rank, on all threads.
   template <class Body>
   void for_each_own(Mailboxes& mail, const Body& body) {
-    voxdag::for_each_own(job_.ranks, job_.mailboxes, job_.progress, [&](std::uint32_t box) {
+    voxdag::for_each_own(job_.ranks, job_.mailboxes, job_.work, [&](std::uint32_t box) {
       Mailboxes::Sender sender(mail);
       body(box, sender);
       sender.flush();
@@ -104,10 +104,10 @@ class LevelMerge {
 
   /// Sends the nodes of the level to their owners.
   void ask(const std::string& questions) {
-    Mailboxes mail(job_.ranks, job_.folder, questions, job_.mailboxes, job_.budget);
+    Mailboxes mail(job_.ranks, job_.folder, questions, job_.mailboxes, *job_.work.memory);
     for_each_own(mail, [&](std::uint32_t box, Mailboxes::Sender& sender) {
       std::optional<WorkFile> ids;
-      if (!is_leaf_) ids = job_.folder.open_written(ids_name(level_ + 1, box), job_.progress);
+      if (!is_leaf_) ids = job_.folder.open_written(ids_name(level_ + 1, box), job_.work);
       std::uint64_t first = 0;
       for_each_part(box, [&](std::uint32_t p, const PartFile& part) {
         for (std::uint32_t i = 0; i < part.pieces.size(); ++i) {
@@ -133,7 +133,7 @@ class LevelMerge {
 
   /// Asks for the nodes above the pieces, from the cells of the level below.
   void ask_top(Mailboxes::Sender& sender) {
-    const WorkFile file = job_.folder.open_written(top_name(level_ + 1), job_.progress);
+    const WorkFile file = job_.folder.open_written(top_name(level_ + 1), job_.work);
     const auto cells = file.values<TopCell>();
     for (std::size_t i = 0; i < cells.size();) {
       Question question{kTop, 0, cells[i].code >> 3};
@@ -163,7 +163,7 @@ class LevelMerge {
     std::byte record[kMaxRecordBytes];
     if (is_leaf_) {
       for (std::uint64_t i = 0; i < dag.leaf_block_count; ++i) {
-        poll_seldom(job_.progress, i);
+        job_.work.poll_seldom(i);
         if (i % kRelease == kRelease - 1) part.release();
         question.place = i;
         std::memcpy(record, &dag.leaf_blocks[i], kLeafRecordBytes);
@@ -176,7 +176,7 @@ class LevelMerge {
     const std::uint64_t base = level_ + 1 == dag.levels - 2 ? 0 : dag.level_begin[level_ + 1];
     std::uint64_t count = 0;
     for (std::uint64_t at = begin; at < end;) {
-      poll_seldom(job_.progress, ++count);
+      job_.work.poll_seldom(++count);
       if (count % kRelease == 0) part.release();
       const auto mask = static_cast<std::uint8_t>(child_mask(dag.nodes + at));
       const int ids = std::popcount(mask);
@@ -196,15 +196,15 @@ class LevelMerge {
 
   /// Gives equal nodes one id, and answers.
   void intern(const std::string& questions, const std::string& answers) {
-    Mailboxes mail(job_.ranks, job_.folder, answers, job_.mailboxes, job_.budget);
+    Mailboxes mail(job_.ranks, job_.folder, answers, job_.mailboxes, *job_.work.memory);
     for_each_own(mail, [&](std::uint32_t box, Mailboxes::Sender& sender) {
-      const WorkFile file = job_.folder.open_written(mailbox_name(questions, box), job_.progress);
-      UniqueRecords nodes(&job_.budget);
+      const WorkFile file = job_.folder.open_written(mailbox_name(questions, box), job_.work);
+      UniqueRecords nodes(job_.work.memory);
       const std::span<const std::byte> bytes = file.bytes();
       std::uint64_t count = 0;
       for (std::size_t at = 0; at < bytes.size();) {
         if ((++count & 0xFFFFF) == 0) file.release(at);
-        poll_seldom(job_.progress, count);
+        job_.work.poll_seldom(count);
         Question question;
         std::memcpy(&question, bytes.data() + at, sizeof question);
         at += sizeof question;
@@ -228,7 +228,7 @@ class LevelMerge {
   /// Stores the ids of the nodes of each part, and the cells of the level above which the pieces
   /// share nodes.
   void collect(const std::string& answers, const std::string& cells) {
-    Mailboxes mail(job_.ranks, job_.folder, cells, job_.mailboxes, job_.budget);
+    Mailboxes mail(job_.ranks, job_.folder, cells, job_.mailboxes, *job_.work.memory);
     for_each_own(mail, [&](std::uint32_t box, Mailboxes::Sender& sender) {
       std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint64_t> first;
       std::uint64_t count = 0;
@@ -239,13 +239,13 @@ class LevelMerge {
           count += places_of(part.pieces[i].dag, level_);
         }
       });
-      PageVector<std::uint64_t> ids(&job_.budget);
+      PageVector<std::uint64_t> ids(job_.work.memory);
       ids.resize(count);
-      const WorkFile file = job_.folder.open_written(mailbox_name(answers, box), job_.progress);
+      const WorkFile file = job_.folder.open_written(mailbox_name(answers, box), job_.work);
       const auto all = file.values<Answer>();
       for (std::size_t i = 0; i < all.size(); ++i) {
         if ((i & 0xFFFFF) == 0) file.release(i * sizeof(Answer));
-        poll_seldom(job_.progress, i);
+        job_.work.poll_seldom(i);
         if (all[i].part == kTop)
           sender.send_value(0, TopCell{all[i].place, all[i].id});
         else
@@ -268,7 +268,7 @@ class LevelMerge {
   }
 
   void write_top(const std::string& cells) {
-    const WorkFile file = job_.folder.open_written(cells, job_.progress);
+    const WorkFile file = job_.folder.open_written(cells, job_.work);
     const auto all = file.values<TopCell>();
     std::vector<TopCell> sorted(all.begin(), all.end());
     std::sort(sorted.begin(), sorted.end(),
@@ -314,16 +314,15 @@ MergedNodes merge_parts(const MergeJob& job) {
   for (int level = job.levels - 2; level >= 0; --level) {
     const std::string step = "merge-" + std::to_string(level);
     if (!is_done_for_all(job.ranks, job.folder, step)) {
-      if (job.progress != nullptr)
-        job.progress->report("merge", 1 - (level + 1.0) / (job.levels - 1));
+      job.work.report("merge", 1 - (level + 1.0) / (job.levels - 1));
       LevelMerge(job, level).run();
       mark_done_for_all(job.ranks, job.folder, step);
       // Until then, a new run needs them to merge this level again.
-      for_each_own(job.ranks, job.mailboxes, nullptr,
+      for_each_own(job.ranks, job.mailboxes, {},
                    [&](std::uint32_t box) { job.folder.remove(ids_name(level + 1, box)); });
     }
   }
-  const WorkFile file = job.folder.open_written(top_name(0), job.progress);
+  const WorkFile file = job.folder.open_written(top_name(0), job.work);
   const auto root = file.values<TopCell>();
   if (root.empty()) return {};
   return {root[0].id, false};

@@ -17,7 +17,7 @@
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/svdag/long_svdag.hpp"
 
 namespace voxdag {
@@ -29,8 +29,7 @@ struct MergeJob {
   int levels;  ///< The grid has 2^levels voxels a side.
   PartFiles& parts;
   std::uint32_t mailboxes;  ///< Number of owners of nodes.
-  MemoryBudget& budget;
-  Progress* progress;  ///< May be null.
+  Work work;                ///< Has a budget.
   /// The plain layout of nodes holds so many words; more need long pointers.
   std::uint64_t most_plain_words = kMaxPlainWords;
 };

@@ -27,7 +27,7 @@ namespace {
 constexpr const char* kPlan = "parts/plan";
 
 /// Returns the checksum of a file, as text.
-std::string checksum_of(const std::filesystem::path& path, Progress* progress) {
+std::string checksum_of(const std::filesystem::path& path, Work work) {
   constexpr std::size_t kStep = std::size_t{16} << 20;
   const MappedFile file(path, MappedFile::Access::kSequential);
   const std::string_view text = file.text();
@@ -36,18 +36,16 @@ std::string checksum_of(const std::filesystem::path& path, Progress* progress) {
     const std::string_view part = text.substr(at, kStep);
     checksum.add(std::as_bytes(std::span<const char>(part)));
     file.release(part);
-    poll(progress);
-    if (progress != nullptr)
-      progress->report("check", static_cast<double>(at) / static_cast<double>(text.size()), at);
+    work.poll();
+    work.report_done("check", at, text.size());
   }
   return fmt::format("{:016x}", checksum.digest());
 }
 
 /// Returns what the job is about. Collective.
-JobSettings settings_of(const PartsJob& job, const std::string& program, Ranks& ranks,
-                        Progress* progress) {
+JobSettings settings_of(const PartsJob& job, const std::string& program, Ranks& ranks, Work work) {
   std::string checksum;
-  if (ranks.rank() == 0) checksum = checksum_of(job.mesh, progress);
+  if (ranks.rank() == 0) checksum = checksum_of(job.mesh, work);
   std::vector<std::byte> bytes(checksum.size());
   std::memcpy(bytes.data(), checksum.data(), bytes.size());
   ranks.broadcast(bytes);
@@ -79,17 +77,14 @@ auto with_part_name(std::uint64_t part, const Work& work) {
 /// One run of a job on one rank.
 class PartsRun {
  public:
-  PartsRun(const PartsJob& job, Ranks& ranks, const WorkFolder& folder, MemoryBudget& budget,
-           Progress* progress)
+  PartsRun(const PartsJob& job, Ranks& ranks, const WorkFolder& folder, Work work)
       : job_(job),
         ranks_(ranks),
         folder_(folder),
-        budget_(budget),
-        progress_(progress),
+        work_(work),
         mesh_job_{ranks, folder, job.mesh, job.grid, job.reading, job.chunk_bytes},
         log_(folder, ranks.rank()) {
-    mesh_job_.reading.progress = progress;
-    mesh_job_.reading.memory = &budget;
+    mesh_job_.reading.work = work;
   }
 
   PartsReport run(const std::string& program) {
@@ -100,10 +95,10 @@ class PartsRun {
     report_.parts = parts.size();
     end(PartsStep::kParts);
 
-    PartFiles files(folder_, parts.size(), progress_);
+    PartFiles files(folder_, parts.size(), work_);
     report_.mailboxes = mailboxes(files);
-    const MergeJob merge{ranks_,  folder_,   facts.grid.levels,    files, report_.mailboxes,
-                         budget_, progress_, job_.most_plain_words};
+    const MergeJob merge{
+        ranks_, folder_, facts.grid.levels, files, report_.mailboxes, work_, job_.most_plain_words};
     const MergedNodes merged = merge_parts(merge);
     end(PartsStep::kMerge);
     const OrderedDag dag = order_nodes(merge, merged);
@@ -117,7 +112,7 @@ class PartsRun {
     metadata.counts = dag.counts;
     report_.node_bytes = dag.level_begin.back() * 4;
     report_.leaf_bytes = dag.leaf_blocks * 8;
-    if (progress_ != nullptr) progress_->report("write", 0);
+    work_.report("write", 0);
     write_vdag_from_runs(merge, dag, metadata, job_.output);
     end(PartsStep::kWrite);
     const std::uint64_t peak = peak_resident_bytes();
@@ -129,13 +124,13 @@ class PartsRun {
  private:
   /// Returns the parts: those of the folder, or new ones. Collective.
   std::vector<CellRange> plan(const MeshFacts& facts) {
-    const std::uint64_t has_plan = ranks_.rank() == 0 && folder_.open(kPlan, progress_) ? 1 : 0;
+    const std::uint64_t has_plan = ranks_.rank() == 0 && folder_.open(kPlan, work_) ? 1 : 0;
     if (ranks_.all_gather({&has_plan, 1})[0] == 0) {
       const std::vector<TriangleSegment> segments = mesh_segments(mesh_job_, facts);
       if (ranks_.rank() == 0) write_plan(facts, segments);
     }
     ranks_.barrier();
-    const WorkFile file = folder_.open_written(kPlan, progress_);
+    const WorkFile file = folder_.open_written(kPlan, work_);
     const auto stored = file.values<CellRange>();
     return std::vector<CellRange>(stored.begin(), stored.end());
   }
@@ -146,11 +141,12 @@ class PartsRun {
     folder_.remove(kMergeFolder);
     const int level = segment_cell_level(facts.grid.levels);
     CountedVector<CellLoad> loads(std::size_t{1} << (3 * level), CellLoad{},
-                                  CountedAllocator<CellLoad>(&budget_));
+                                  CountedAllocator<CellLoad>(work_.memory));
     for (const TriangleSegment& segment : segments) add_loads(segment, loads);
     double sum = 0;
     for (const CellLoad& load : loads) sum += load.bytes();
-    const double memory = static_cast<double>(std::min(budget_.left(), std::uint64_t{1} << 40));
+    const double memory =
+        static_cast<double>(std::min(work_.memory->left(), std::uint64_t{1} << 40));
     // Eight parts per rank, so that all ranks finish at about one time.
     const double count = job_.parts != 0 ? static_cast<double>(job_.parts) : 8.0 * ranks_.count();
     double part_bytes = sum / count;
@@ -167,7 +163,7 @@ class PartsRun {
     std::uint64_t missing = 0;
     for (auto p = static_cast<std::uint64_t>(ranks_.rank()); p < parts;
          p += static_cast<std::uint64_t>(ranks_.count())) {
-      if (folder_.open(part_name(p), progress_)) continue;
+      if (folder_.open(part_name(p), work_)) continue;
       folder_.remove(part_name(p));
       ++missing;
     }
@@ -186,14 +182,14 @@ class PartsRun {
       folder_.remove("done");
     }
     const std::vector<TriangleSegment> segments = mesh_segments(mesh_job_, facts);
-    Progress quiet(progress_);
+    Progress quiet(work_.progress);
     // missing_parts() has checked the contents.
     const StepFiles files{kPartCounter, parts.size(), part_name, "parts", WorkFile::Check::kHeader};
-    make_missing(ranks_, folder_, files, progress_, [&](std::uint64_t p) {
+    make_missing(ranks_, folder_, files, work_, [&](std::uint64_t p) {
       const auto timer = log_.start();
       WorkFileWriter file = folder_.create(part_name(p));
       const PartCounts counts = with_part_name(p, [&] {
-        return build_part(segments, facts.grid.levels, parts[p], file, budget_, &quiet);
+        return build_part(segments, facts.grid.levels, parts[p], file, {work_.memory, &quiet});
       });
       const std::uint64_t bytes = file.size();
       file.commit();
@@ -204,8 +200,8 @@ class PartsRun {
   /// Returns the number of mailboxes: that of an unfinished merge, or a new one. Collective.
   std::uint32_t mailboxes(PartFiles& files) {
     const std::string name = std::string(kMergeFolder) + "/mailboxes";
-    const std::uint32_t wanted = mailboxes_for(ranks_, files, budget_);
-    if (ranks_.rank() == 0 && !folder_.open(name, progress_)) {
+    const std::uint32_t wanted = mailboxes_for(ranks_, files, *work_.memory);
+    if (ranks_.rank() == 0 && !folder_.open(name, work_)) {
       folder_.remove(kMergeFolder);
       folder_.remove("done");
       WorkFileWriter file = folder_.create(name);
@@ -213,7 +209,7 @@ class PartsRun {
       file.commit();
     }
     ranks_.barrier();
-    return folder_.open_written(name, progress_).values<std::uint32_t>()[0];
+    return folder_.open_written(name, work_).values<std::uint32_t>()[0];
   }
 
   void end(PartsStep step) {
@@ -238,8 +234,7 @@ class PartsRun {
   const PartsJob& job_;
   Ranks& ranks_;
   const WorkFolder& folder_;
-  MemoryBudget& budget_;
-  Progress* progress_;
+  Work work_;
   MeshJob mesh_job_;
   PartsLog log_;
   PartsReport report_;
@@ -251,13 +246,13 @@ class PartsRun {
 }  // namespace
 
 PartsReport build_in_parts(const PartsJob& job, const std::string& program, Ranks& ranks,
-                           MemoryBudget& budget, Progress* progress) {
-  const JobSettings settings = settings_of(job, program, ranks, progress);
+                           Work work) {
+  const JobSettings settings = settings_of(job, program, ranks, work);
   std::optional<WorkFolder> folder;
   if (ranks.rank() == 0) folder.emplace(job.work_folder, settings, true);
   ranks.barrier();
   if (ranks.rank() != 0) folder.emplace(job.work_folder, settings, false);
-  PartsReport report = PartsRun(job, ranks, *folder, budget, progress).run(program);
+  PartsReport report = PartsRun(job, ranks, *folder, work).run(program);
   ranks.barrier();
   if (ranks.rank() == 0) folder->remove_work();
   return report;

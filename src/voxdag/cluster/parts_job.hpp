@@ -19,7 +19,7 @@
 #include "voxdag/cluster/part_merge.hpp"
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
 #include "voxdag/formats/readers/read_options.hpp"
@@ -32,7 +32,7 @@ struct PartsJob {
   /// Least number of parts, if the mesh meets enough cells; 0: a number that fits the ranks and
   /// their memory.
   std::uint64_t parts = 0;
-  ReadOptions reading;  ///< `progress` and `memory` are set by the job.
+  ReadOptions reading;  ///< The job sets `work`.
   /// Bytes of the mesh file that a thread reads at once. All runs of a job need the same number.
   std::size_t chunk_bytes = kChunkBytes;
   /// A DAG with more node words gets long pointers (stored/svdag/long_svdag.hpp). For tests.
@@ -55,10 +55,10 @@ struct PartsReport {
   std::uint64_t node_bytes = 0, leaf_bytes = 0;  ///< Of the DAG in the paper's layout.
 };
 
-/// Runs the job, and removes all but the log from the work folder. Collective. `budget` limits the
-/// memory of this rank; mapped files do not count. Throws Error, OverMemory and Cancelled; the work
-/// folder then holds what is done, and the same call goes on with it.
+/// Runs the job, and removes all but the log from the work folder. Collective. The budget of `work`
+/// limits the memory of this rank; mapped files do not count. Throws Error, OverMemory and
+/// Cancelled; the work folder then holds what is done, and the same call goes on with it.
 PartsReport build_in_parts(const PartsJob& job, const std::string& program, Ranks& ranks,
-                           MemoryBudget& budget, Progress* progress);
+                           Work work);
 
 }  // namespace voxdag

@@ -6,10 +6,11 @@
 #include <memory>
 #include <span>
 
-#include "voxdag/cluster/named_output.hpp"
 #include "voxdag/cluster/ranks.hpp"
 
 namespace voxdag {
+
+class NamedOutput;
 
 /// Rank 0 creates a file of zeros under a temporary name, NAME.voxdag-PID-N, in the folder of the
 /// output, which all ranks must see. commit() gives it its name, and replaces an older file of that
@@ -20,6 +21,7 @@ class SharedFile {
   /// Creates the file of `bytes` bytes. Collective. If any rank cannot open it, all ranks throw
   /// Error(path, "", reason).
   SharedFile(Ranks& ranks, const std::filesystem::path& path, std::uint64_t bytes);
+  ~SharedFile();
 
   /// Writes bytes at an offset in bytes; they must end within the file. Not collective, and
   /// thread-safe. Ranks and threads must write disjoint ranges. Bytes that no rank writes are 0.

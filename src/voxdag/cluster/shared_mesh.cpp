@@ -34,10 +34,10 @@ SharedMesh::SharedMesh(Ranks& ranks, const WorkFolder& folder, const std::filesy
     : ranks_(ranks),
       folder_(folder),
       path_(path),
-      progress_(reading.progress),
-      quiet_(progress_),
+      work_(reading.work),
+      quiet_(work_.progress),
       reading_(reading) {
-  reading_.progress = &quiet_;
+  reading_.work.progress = &quiet_;
   // Rank 0 reports a malformed header alone.
   if (ranks.rank() == 0) chunks_ = open_mesh_chunks(path, reading_, chunk_bytes);
   ranks.barrier();
@@ -51,19 +51,18 @@ SharedMesh::SharedMesh(Ranks& ranks, const WorkFolder& folder, const std::filesy
     read_chunks();
   else
     read_alone();
-  vertices_.emplace(folder_, kVertices, tasks_, progress_);
-  triangles_.emplace(folder_, kTriangles, tasks_, progress_);
+  vertices_.emplace(folder_, kVertices, tasks_, work_);
+  triangles_.emplace(folder_, kTriangles, tasks_, work_);
 }
 
 template <class Body>
 void SharedMesh::for_each_missing(JobCounter counter, const char* name, const Body& body) {
   const auto name_of = [name](std::uint64_t task) { return numbered_name(name, task); };
-  make_missing(ranks_, folder_, {counter, tasks_, name_of, "read"}, progress_,
-               [&](std::uint64_t task) {
-                 WorkFileWriter file = folder_.create(name_of(task));
-                 body(task, file);
-                 file.commit();
-               });
+  make_missing(ranks_, folder_, {counter, tasks_, name_of, "read"}, work_, [&](std::uint64_t task) {
+    WorkFileWriter file = folder_.create(name_of(task));
+    body(task, file);
+    file.commit();
+  });
 }
 
 std::uint64_t SharedMesh::first_chunk(std::uint64_t task) const {
@@ -82,7 +81,7 @@ void SharedMesh::count_chunks() {
   });
   starts_ = {{}};
   for (std::uint64_t task = 0; task < tasks_; ++task) {
-    const WorkFile file = folder_.open_seen(numbered_name(kCounts, task), progress_);
+    const WorkFile file = folder_.open_seen(numbered_name(kCounts, task), work_);
     for (const ChunkCounts& counts : file.values<ChunkCounts>())
       starts_.push_back(
           {starts_.back().vertices + counts.vertices, starts_.back().triangles + counts.triangles});
@@ -102,7 +101,7 @@ void SharedMesh::read_chunks() {
                           chunks_->read_vertices(chunk, vertices);
                         });
   });
-  const ArrayFiles<Vec3f> vertices(folder_, kVertices, tasks_, progress_);
+  const ArrayFiles<Vec3f> vertices(folder_, kVertices, tasks_, work_);
   for_each_missing(
       kMeshTrianglesCounter, kTriangles, [&](std::uint64_t task, WorkFileWriter& file) {
         write_values<Triangle>(task, &ChunkCounts::triangles, file,
@@ -126,7 +125,8 @@ void SharedMesh::write_values(std::uint64_t task, std::uint64_t ChunkCounts::*co
   const auto step = 2 * static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
   for (std::uint64_t first = first_chunk(task); first < last; first += step) {
     const std::uint64_t end = std::min(first + step, last), begin = starts_[first].*count;
-    CountedVector<T> values(starts_[end].*count - begin, T{}, CountedAllocator<T>(reading_.memory));
+    CountedVector<T> values(starts_[end].*count - begin, T{},
+                            CountedAllocator<T>(reading_.work.memory));
     parallel_for(end - first, [&](std::size_t i) {
       const std::uint64_t chunk = first + i;
       read(chunk, std::span<T>(values).subspan(starts_[chunk].*count - begin,
@@ -137,21 +137,21 @@ void SharedMesh::write_values(std::uint64_t task, std::uint64_t ChunkCounts::*co
 }
 
 void SharedMesh::read_alone() {
-  if (ranks_.rank() == 0 && !(folder_.open(numbered_name(kVertices, 0), progress_) &&
-                              folder_.open(numbered_name(kTriangles, 0), progress_))) {
+  if (ranks_.rank() == 0 && !(folder_.open(numbered_name(kVertices, 0), work_) &&
+                              folder_.open(numbered_name(kTriangles, 0), work_))) {
     MappedArrays arrays(folder_.file(numbered_name(kVertices, 0)).parent_path());
     ReadOptions reading = reading_;
-    reading.progress = progress_;
+    reading.work = work_;
     reading.arrays = &arrays;
     const Mesh mesh = read_mesh(path_, reading);
     // read_mesh() left the bytes reserved; this releases them at the end.
-    reading.memory->release(memory_bytes(mesh));
-    const MemoryReservation held(reading.memory, memory_bytes(mesh));
+    reading.work.memory->release(memory_bytes(mesh));
+    const MemoryReservation held(reading.work.memory, memory_bytes(mesh));
     const auto write = [&](const char* name, std::span<const std::byte> bytes) {
       constexpr std::size_t kStep = std::size_t{16} << 20;
       WorkFileWriter file = folder_.create(numbered_name(name, 0));
       for (std::size_t at = 0; at < bytes.size(); at += kStep) {
-        poll(progress_);
+        work_.poll();
         file.write(bytes.subspan(at, std::min(kStep, bytes.size() - at)));
         arrays.release();
       }
@@ -179,7 +179,7 @@ Box3d SharedMesh::used_bounds() {
   Box3f box = Box3f::empty();
   std::uint64_t bad_triangle = kNone;  // the first triangle with a vertex that is not finite
   parallel_for(own, [&](std::size_t i) {
-    poll(progress_);
+    work_.poll();
     ArrayFiles<Vec3f>::Reader vertices(*vertices_);
     ArrayFiles<Triangle>::Reader triangles(*triangles_);
     Box3f of_step = Box3f::empty();
@@ -235,12 +235,13 @@ std::uint64_t SharedMesh::count_vertices() {
   if (!chunks_ || !chunks_->repeats_vertices()) return vertices_->size();
   // Sends each vertex to the mailbox that its hash decides, which counts different ones.
   constexpr std::uint64_t kVertexBytes = 64;  // with its slot in the table
-  std::uint64_t wanted = mailboxes_of(ranks_, vertices_->size() * kVertexBytes, *reading_.memory);
+  std::uint64_t wanted =
+      mailboxes_of(ranks_, vertices_->size() * kVertexBytes, *reading_.work.memory);
   wanted = ranks_.all_gather({&wanted, 1})[0];
   const auto mailboxes = static_cast<std::uint32_t>(wanted);
   const std::string name = "mesh/different";
   {
-    Mailboxes mail(ranks_, folder_, name, mailboxes, *reading_.memory);
+    Mailboxes mail(ranks_, folder_, name, mailboxes, *reading_.work.memory);
     Mailboxes::Sender sender(mail);
     const auto rank = static_cast<std::uint64_t>(ranks_.rank()),
                count = static_cast<std::uint64_t>(ranks_.count());
@@ -248,7 +249,7 @@ std::uint64_t SharedMesh::count_vertices() {
     ArrayFiles<Vec3f>::Reader vertices(*vertices_);
     for (std::uint64_t first = rank * kReleaseTriangles; first < all;
          first += count * kReleaseTriangles) {
-      poll(progress_);
+      work_.poll();
       for (std::uint64_t v = first; v < std::min(first + kReleaseTriangles, all); ++v)
         sender.send_value(static_cast<std::uint32_t>((hash_bits(vertices[v]) >> 32) % mailboxes),
                           vertices[v]);
@@ -259,9 +260,9 @@ std::uint64_t SharedMesh::count_vertices() {
   }
   std::mutex mutex;
   std::uint64_t mine = 0, sum = 0;
-  for_each_own(ranks_, mailboxes, progress_, [&](std::uint32_t box) {
-    const WorkFile file = folder_.open_written(mailbox_name(name, box), progress_);
-    UniqueRecords different(reading_.memory);
+  for_each_own(ranks_, mailboxes, work_, [&](std::uint32_t box) {
+    const WorkFile file = folder_.open_written(mailbox_name(name, box), work_);
+    UniqueRecords different(reading_.work.memory);
     for (std::size_t at = 0; at < file.bytes().size(); at += sizeof(Vec3f)) {
       const auto record = file.bytes().subspan(at, sizeof(Vec3f));
       different.find_or_add(record, xxh3_64(record));

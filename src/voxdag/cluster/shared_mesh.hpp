@@ -8,20 +8,69 @@
 ///   mesh/counts-T      ChunkCounts of each chunk of task T; nothing if rank 0 must read the mesh
 ///   mesh/vertices-T    Vec3f of each vertex
 ///   mesh/triangles-T   Triangle: three indices into all vertices
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "voxdag/cluster/array_files.hpp"
-#include "voxdag/cluster/job_counters.hpp"
+#include "voxdag/cluster/missing_files.hpp"
 #include "voxdag/cluster/ranks.hpp"
+#include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/box.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/formats/readers/mesh_chunks.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
+
+/// The files NAME-0, NAME-1, ... that ranks have written, as one array, mapped into memory.
+template <class T>
+class ArrayFiles {
+ public:
+  /// Opens `count` files. Throws Error if one is missing, and Cancelled.
+  ArrayFiles(const WorkFolder& folder, const std::string& name, std::uint64_t count, Work work) {
+    for (std::uint64_t i = 0; i < count; ++i) {
+      files_.push_back(folder.open_seen(numbered_name(name, i), work));
+      firsts_.push_back(firsts_.back() + files_.back().values<T>().size());
+    }
+  }
+
+  std::uint64_t size() const { return firsts_.back(); }
+
+  /// Reads elements with indices below size(); fast if they are near each other. For one thread.
+  class Reader {
+   public:
+    explicit Reader(const ArrayFiles& array) : array_(array) {}
+    const T& operator[](std::uint64_t index) {
+      if (index - first_ >= run_.size()) {
+        const auto file = static_cast<std::size_t>(
+            std::upper_bound(array_.firsts_.begin(), array_.firsts_.end(), index) -
+            array_.firsts_.begin() - 1);
+        first_ = array_.firsts_[file];
+        run_ = array_.files_[file].template values<T>();
+      }
+      return run_[index - first_];
+    }
+
+   private:
+    const ArrayFiles& array_;
+    std::uint64_t first_ = 0;  ///< Index of the first element of `run_`.
+    std::span<const T> run_;
+  };
+
+  /// Drops the pages of all files from this process's memory. Thread-safe.
+  void release() const {
+    for (const WorkFile& file : files_) file.release(file.bytes().size());
+  }
+
+ private:
+  std::vector<WorkFile> files_;
+  std::vector<std::uint64_t> firsts_{0};  ///< First element of each file, and number of all.
+};
 
 /// The folder of the mesh, within the work folder. It can be removed when the segments are written.
 inline constexpr std::string_view kMeshFolder = "mesh";
@@ -64,7 +113,7 @@ class SharedMesh {
   Ranks& ranks_;
   const WorkFolder& folder_;
   std::filesystem::path path_;
-  Progress* progress_;
+  Work work_;
   Progress quiet_;
   ReadOptions reading_;                 ///< The caller's options, with quiet_ as the progress.
   std::unique_ptr<MeshChunks> chunks_;  ///< Null if rank 0 reads the mesh alone.

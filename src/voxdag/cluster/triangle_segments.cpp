@@ -69,11 +69,10 @@ Batch map_batch(const SharedMesh& mesh, const Grid& grid, const CellFinder& find
 
 /// Writes the triangles in the order of their first entries, the entries and the cells.
 void write_sorted(WorkFileWriter& file, const PageVector<QuantizedTriangle>& triangles,
-                  const PageVector<double>& voxels, PageVector<Entry>& entries,
-                  MemoryBudget& budget, const Progress* progress) {
+                  const PageVector<double>& voxels, PageVector<Entry>& entries, Work work) {
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  polled_sort(entries.begin(), entries.end(), progress);
-  PageVector<std::uint32_t> order(&budget), place(&budget);
+  polled_sort(entries.begin(), entries.end(), work);
+  PageVector<std::uint32_t> order(work.memory), place(work.memory);
   place.resize(triangles.size());
   std::fill(place.begin(), place.end(), kNone);
   for (const Entry& entry : entries) {
@@ -116,20 +115,19 @@ std::uint64_t segment_triangles(const MemoryBudget& budget) {
 }
 
 void write_segment(const WorkFolder& folder, std::uint64_t index, const SharedMesh& mesh,
-                   const Grid& grid, std::uint64_t first, std::uint64_t last, MemoryBudget& budget,
-                   Progress* progress) {
+                   const Grid& grid, std::uint64_t first, std::uint64_t last, Work work) {
   const CellFinder finder(grid.levels, segment_cell_level(grid.levels));
-  PageVector<QuantizedTriangle> triangles(&budget);
-  PageVector<double> voxels(&budget);
-  PageVector<Entry> entries(&budget);
+  PageVector<QuantizedTriangle> triangles(work.memory);
+  PageVector<double> voxels(work.memory);
+  PageVector<Entry> entries(work.memory);
   // A few batches at a time, which are then joined in order.
   const std::uint64_t step =
       2 * kBatch * static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
   for (std::uint64_t begin = first; begin < last; begin += step) {
     const std::uint64_t end = std::min(last, begin + step);
     std::vector<Batch> batches((end - begin + kBatch - 1) / kBatch);
-    polled_for(batches.size(), 1, nullptr, "", [&](std::size_t i) {
-      poll(progress);
+    polled_for(batches.size(), 1, {}, "", [&](std::size_t i) {
+      work.poll();
       const std::uint64_t at = begin + i * kBatch;
       batches[i] = map_batch(mesh, grid, finder, at, std::min(end, at + kBatch));
     });
@@ -142,7 +140,7 @@ void write_segment(const WorkFolder& folder, std::uint64_t index, const SharedMe
     }
   }
   WorkFileWriter file = folder.create(segment_name(index));
-  write_sorted(file, triangles, voxels, entries, budget, progress);
+  write_sorted(file, triangles, voxels, entries, work);
   file.commit();
 }
 

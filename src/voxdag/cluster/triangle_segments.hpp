@@ -18,7 +18,7 @@
 #include "voxdag/cluster/shared_mesh.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -49,8 +49,7 @@ std::uint64_t segment_triangles(const MemoryBudget& budget);
 /// Writes segment `index`: the triangles of `mesh` from `first` to `last` - 1. The file depends on
 /// these and the grid alone. Throws Error, OverMemory and Cancelled.
 void write_segment(const WorkFolder& folder, std::uint64_t index, const SharedMesh& mesh,
-                   const Grid& grid, std::uint64_t first, std::uint64_t last, MemoryBudget& budget,
-                   Progress* progress);
+                   const Grid& grid, std::uint64_t first, std::uint64_t last, Work work);
 
 /// A segment that was read.
 class TriangleSegment {

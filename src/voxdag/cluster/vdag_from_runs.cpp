@@ -48,13 +48,13 @@ class PlainNodes {
 template <class Body>
 void read_run(const MergeJob& job, const OrderedDag& dag, int level, std::uint32_t box,
               const Body& body) {
-  const WorkFile file = job.folder.open_written(words_name(level, box), job.progress);
+  const WorkFile file = job.folder.open_written(words_name(level, box), job.work);
   const std::span<const std::byte> bytes = file.bytes();
   std::optional<PlainNodes> plain;
   if (!dag.has_long_pointers && level + 1 < job.levels - 2)
     plain.emplace(dag.level_begin[static_cast<std::size_t>(level) + 1]);
   for (std::size_t at = 0; at < bytes.size(); at += kStep) {
-    if (job.progress != nullptr) job.progress->throw_if_cancelled();
+    job.work.poll();
     const auto step = bytes.subspan(at, std::min(kStep, bytes.size() - at));
     body(plain ? plain->convert(step) : step);
     file.release(std::min(at + kStep, bytes.size()));
@@ -140,8 +140,7 @@ std::vector<std::uint64_t> run_bytes(const MergeJob& job, int level) {
   const auto ranks = static_cast<std::uint32_t>(job.ranks.count());
   std::vector<std::uint64_t> mine((job.mailboxes + ranks - 1) / ranks);
   for (auto box = static_cast<std::uint32_t>(job.ranks.rank()); box < job.mailboxes; box += ranks)
-    mine[box / ranks] =
-        job.folder.open_written(words_name(level, box), job.progress).bytes().size();
+    mine[box / ranks] = job.folder.open_written(words_name(level, box), job.work).bytes().size();
   const std::vector<std::uint64_t> all = job.ranks.all_gather(mine);
   std::vector<std::uint64_t> sizes(job.mailboxes);
   for (std::uint32_t box = 0; box < job.mailboxes; ++box)

@@ -52,7 +52,7 @@ void WorkFileWriter::commit() {
 }
 
 std::optional<WorkFile> WorkFile::open(const std::filesystem::path& path, std::uint64_t key,
-                                       const Progress* progress, Check check) {
+                                       Work work, Check check) {
   std::error_code none;
   if (!std::filesystem::is_regular_file(path, none)) return std::nullopt;
   WorkFile file(MappedFile(path, MappedFile::Access::kSequential));
@@ -68,7 +68,7 @@ std::optional<WorkFile> WorkFile::open(const std::filesystem::path& path, std::u
   Xxh3Stream checksum;
   const std::span<const std::byte> contents = file.bytes();
   for (std::size_t at = 0; at < contents.size(); at += kBytesPerStep) {
-    if (progress != nullptr) progress->throw_if_cancelled();
+    work.poll();
     checksum.add(contents.subspan(at, std::min(kBytesPerStep, contents.size() - at)));
     if (contents.size() > kBytesPerStep) file.release(at + kBytesPerStep);
   }

@@ -17,7 +17,7 @@
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/io/checksum.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -64,10 +64,10 @@ class WorkFile {
     kHeader  ///< Trusts the contents: another rank or step has checked them.
   };
 
-  /// Opens a file and checks it. Returns nothing if there is no file of this name, or if it
-  /// is not complete, damaged or from another job. Throws Cancelled; `progress` may be null.
+  /// Opens a file and checks it. Returns nothing if there is no file of this name, or if it is not
+  /// complete, damaged or from another job. Throws Cancelled.
   static std::optional<WorkFile> open(const std::filesystem::path& path, std::uint64_t key,
-                                      const Progress* progress, Check check = Check::kAll);
+                                      Work work, Check check = Check::kAll);
 
   /// Returns the contents, aligned to 64 bytes.
   std::span<const std::byte> bytes() const;

@@ -104,13 +104,13 @@ WorkFileWriter WorkFolder::create(std::string_view name, std::size_t buffer_byte
   return {file(name), key_of(name), buffer_bytes};
 }
 
-std::optional<WorkFile> WorkFolder::open(std::string_view name, const Progress* progress,
+std::optional<WorkFile> WorkFolder::open(std::string_view name, Work work,
                                          WorkFile::Check check) const {
-  return WorkFile::open(folder_ / name, key_of(name), progress, check);
+  return WorkFile::open(folder_ / name, key_of(name), work, check);
 }
 
-WorkFile WorkFolder::open_written(std::string_view name, const Progress* progress) const {
-  std::optional<WorkFile> file = open(name, progress);
+WorkFile WorkFolder::open_written(std::string_view name, Work work) const {
+  std::optional<WorkFile> file = open(name, work);
   if (!file) {
     remove(kMergeFolder);
     remove(std::filesystem::path("done").string());
@@ -120,8 +120,8 @@ WorkFile WorkFolder::open_written(std::string_view name, const Progress* progres
   return std::move(*file);
 }
 
-WorkFile WorkFolder::open_seen(std::string_view name, const Progress* progress) const {
-  std::optional<WorkFile> file = open(name, progress, WorkFile::Check::kHeader);
+WorkFile WorkFolder::open_seen(std::string_view name, Work work) const {
+  std::optional<WorkFile> file = open(name, work, WorkFile::Check::kHeader);
   if (!file)
     throw Error((folder_ / name).string(), "",
                 "this rank cannot see the file that another rank wrote: all ranks need the same "

@@ -9,6 +9,7 @@
 
 #include "voxdag/cluster/work_file.hpp"
 #include "voxdag/core/io/descriptor.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -36,15 +37,15 @@ class WorkFolder {
   WorkFileWriter create(std::string_view name,
                         std::size_t buffer_bytes = WorkFileWriter::kBufferBytes) const;
   /// Opens a file of the job; see WorkFile::open().
-  std::optional<WorkFile> open(std::string_view name, const Progress* progress,
+  std::optional<WorkFile> open(std::string_view name, Work work,
                                WorkFile::Check check = WorkFile::Check::kAll) const;
   /// Opens a file that the job has written. Throws Error if it is missing or damaged, and removes
   /// the folder of unfinished merges, so that the next run makes it again from the parts.
-  WorkFile open_written(std::string_view name, const Progress* progress) const;
+  WorkFile open_written(std::string_view name, Work work) const;
 
   /// Opens a file that a rank has written or checked in this run; trusts its contents. Throws Error
   /// if this rank cannot see it.
-  WorkFile open_seen(std::string_view name, const Progress* progress) const;
+  WorkFile open_seen(std::string_view name, Work work) const;
 
   /// Writes an empty file that says that a step is done, and asks for it.
   void mark_done(std::string_view step) const;

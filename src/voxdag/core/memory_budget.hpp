@@ -21,7 +21,8 @@ class OverMemory : public Error {
   using Error::Error;
 };
 
-/// Counts the bytes that work allocates, up to a limit. Thread-safe.
+/// Counts the bytes that work allocates, up to a limit. Thread-safe. Whoever takes a pointer to a
+/// budget counts nothing if it is null.
 class MemoryBudget {
  public:
   /// Makes a budget of `limit` bytes, which include `base`, the bytes that the process holds

@@ -1,14 +1,12 @@
 #pragma once
-/// A growing array on pages of its own, for large and short-lived data.
-///
-/// It grows by mremap, so the old and the new array never exist at the same time. Freed pages go
-/// back to the system immediately. A budget counts the pages.
+/// Arrays on pages of their own, for large data. Freed pages go back to the system immediately.
 #include <sys/mman.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <new>
 #include <type_traits>
 #include <utility>
@@ -18,8 +16,11 @@
 
 namespace voxdag {
 
-/// Like std::vector, for trivial types. Functions that grow it throw OverMemory or std::bad_alloc,
-/// and leave it unchanged if they throw. Move-only.
+inline constexpr std::size_t kHugePage = std::size_t{2} << 20;
+
+/// Like std::vector, for trivial types. It grows by mremap, so the old and the new array never
+/// exist at the same time. A budget counts the pages. Functions that grow it throw OverMemory or
+/// std::bad_alloc, and leave it unchanged if they throw. Move-only.
 template <class T>
 class PageVector {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -27,6 +28,34 @@ class PageVector {
  public:
   /// Makes an empty array. A null budget counts nothing.
   explicit PageVector(MemoryBudget* budget = nullptr) : budget_(budget) {}
+  /// Returns an array of `count` zeros that does not grow and that no budget counts. Pages are
+  /// resident only where they were touched. A large array uses huge pages, if the system grants
+  /// them: on small pages, random reads spend their time on address translation. Throws
+  /// std::bad_alloc.
+  static PageVector zeros(std::size_t count) {
+    PageVector array;
+    const std::size_t bytes = page_bytes(count);
+    if (bytes == 0) return array;
+    // Huge pages must be aligned, but mmap does not guarantee that. So this maps more and unmaps
+    // the ends.
+    const std::size_t slack = bytes >= kHugePage ? kHugePage : 0;
+    void* const memory = map_pages(bytes + slack);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    auto* begin = static_cast<char*>(memory);
+    if (slack != 0) {
+      const std::size_t head = -reinterpret_cast<std::uintptr_t>(begin) & (kHugePage - 1);
+      if (head != 0) ::munmap(begin, head);
+      ::munmap(begin + head + bytes, slack - head);
+      begin += head;
+#ifdef MADV_HUGEPAGE
+      ::madvise(begin, bytes, MADV_HUGEPAGE);
+#endif
+    }
+    array.data_ = reinterpret_cast<T*>(begin);
+    array.size_ = count;
+    array.bytes_ = bytes;
+    return array;
+  }
   PageVector(PageVector&& other) noexcept { swap(other); }
   PageVector& operator=(PageVector&& other) noexcept {
     swap(other);
@@ -76,7 +105,12 @@ class PageVector {
     if (budget_ != nullptr) budget_->release(bytes_ - bytes);
     bytes_ = bytes;
   }
-  /// Gives all memory back to the system.
+  /// Gives the memory back to the system; the elements become zero. Other threads may read them at
+  /// the same time, and see old values or zeros.
+  void discard() {
+    if (data_ != nullptr) ::madvise(data_, bytes_, MADV_DONTNEED);
+  }
+  /// Gives all memory back to the system, and removes all elements.
   void release() noexcept {
     if (data_ == nullptr) return;
     ::munmap(data_, bytes_);
@@ -140,5 +174,13 @@ class PageVector {
   T* data_ = nullptr;
   std::size_t size_ = 0, bytes_ = 0;
 };
+
+/// Returns an array of `count` elements, as PageVector::zeros() makes it. Throws std::bad_alloc.
+template <class T>
+std::shared_ptr<T[]> make_large_array(std::size_t count) {
+  const auto pages =
+      std::make_shared<PageVector<T>>(PageVector<T>::zeros(std::max(count, std::size_t{1})));
+  return {pages, pages->data()};
+}
 
 }  // namespace voxdag

@@ -65,6 +65,11 @@ VOXDAG_HD constexpr Vec3<T> max(Vec3<T> a, Vec3<T> b) {
   return {a.x < b.x ? b.x : a.x, a.y < b.y ? b.y : a.y, a.z < b.z ? b.z : a.z};
 }
 
+/// Compares x, then y, then z.
+inline bool is_before(Vec3i a, Vec3i b) {
+  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
 /// Returns whether no component is infinite or NaN.
 VOXDAG_HD inline bool is_finite(Vec3f v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);

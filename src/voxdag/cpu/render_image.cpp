@@ -20,12 +20,12 @@ RenderedImage finish(const RenderPlan& plan, RenderedImage image, const RenderOp
 }  // namespace
 
 RenderedImage render_image(const CpuScene& scene, const Grid& grid, const RenderOptions& options,
-                           Progress* progress, const ViewSource* source) {
+                           Work work, const ViewSource* source) {
   RenderPlan plan(scene.voxels(), grid, options);
   const std::vector<ViewTile> tiles = make_tiles(options.width, options.height, options.tile_size);
   plan.image().rays = scene.visit([&](const auto& nodes, const auto& caster) {
     const TileRenderer renderer(nodes, caster, plan.setup(), options.beams, source);
-    const std::uint64_t rays = renderer.render(tiles, progress);
+    const std::uint64_t rays = renderer.render(tiles, work);
     if (options.with_steps) renderer.count();
     return rays;
   });

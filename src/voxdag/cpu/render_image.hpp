@@ -1,6 +1,6 @@
 #pragma once
 /// Renders a picture of voxels on the CPU.
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/view_source.hpp"
@@ -12,6 +12,6 @@ namespace voxdag {
 /// and normal are from a pixel's first sample. The scene must be valid and have the grid's levels.
 /// Throws Error for options out of range, and Cancelled.
 RenderedImage render_image(const CpuScene& scene, const Grid& grid, const RenderOptions& options,
-                           Progress* progress = nullptr, const ViewSource* source = nullptr);
+                           Work work = {}, const ViewSource* source = nullptr);
 
 }  // namespace voxdag

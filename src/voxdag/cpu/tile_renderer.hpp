@@ -8,7 +8,7 @@
 
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/cpu/beam_starts.hpp"
 #include "voxdag/render/count_steps.hpp"
 #include "voxdag/render/esvo_view_samples.hpp"
@@ -73,20 +73,18 @@ class TileRenderer {
   TileRenderer& operator=(const TileRenderer&) = delete;
 
   /// Returns the number of rays. Throws Cancelled.
-  std::uint64_t render(std::span<const ViewTile> tiles, Progress* progress) const {
+  std::uint64_t render(std::span<const ViewTile> tiles, Work work) const {
     std::atomic<std::uint64_t> rays{0};
     std::atomic<std::size_t> done{0};
     parallel_for(tiles.size(), [&](std::size_t at) {
-      if (progress != nullptr && progress->cancelled()) return;
+      if (work.cancelled()) return;
       const std::uint64_t tile_rays = render_one(nodes_, caster_, tiles[at]);
       const std::uint64_t rays_so_far = rays.fetch_add(tile_rays) + tile_rays;
       const std::size_t tiles_so_far = done.fetch_add(1) + 1;
-      if (progress != nullptr)
-        progress->report("render",
-                         static_cast<double>(tiles_so_far) / static_cast<double>(tiles.size()),
-                         rays_so_far);
+      work.report("render", static_cast<double>(tiles_so_far) / static_cast<double>(tiles.size()),
+                  rays_so_far);
     });
-    if (progress != nullptr) progress->throw_if_cancelled();
+    work.poll();
     return rays;
   }
 

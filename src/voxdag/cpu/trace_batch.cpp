@@ -18,7 +18,7 @@ void trace_block(const Caster& caster, const Grid& grid, std::span<const Ray> ra
   caster.closest(
       static_cast<int>(rays.size()),
       [&](int i) {
-        return CastRay{make_grid_ray(grid, rays[static_cast<std::size_t>(i)]), {}};
+        return CastRay{make_grid_ray(grid, rays[i]), {}};
       },
       [&](int i, const GridRay& ray, const auto& cell, bool is_hit) {
         const auto at = static_cast<std::size_t>(i);
@@ -29,34 +29,31 @@ void trace_block(const Caster& caster, const Grid& grid, std::span<const Ray> ra
 /// Casts all rays in blocks.
 template <class Caster>
 void trace_all(const Caster& caster, const Grid& grid, std::span<const Ray> rays,
-               std::span<Hit> hits, Progress* progress) {
+               std::span<Hit> hits, Work work) {
   const std::size_t blocks = (rays.size() + kBlock - 1) / kBlock;
   std::atomic<std::size_t> done{0};
   parallel_for(blocks, [&](std::size_t block) {
-    if (progress != nullptr && progress->cancelled()) return;
+    if (work.cancelled()) return;
     const std::size_t begin = block * kBlock, size = std::min(kBlock, rays.size() - begin);
     trace_block(caster, grid, rays.subspan(begin, size), hits.subspan(begin, size));
     const std::size_t so_far = done.fetch_add(size) + size;
-    if (progress != nullptr)
-      progress->report("trace", static_cast<double>(so_far) / static_cast<double>(rays.size()),
-                       so_far);
+    work.report_done("trace", so_far, rays.size());
   });
-  if (progress != nullptr) progress->throw_if_cancelled();
+  work.poll();
 }
 
 }  // namespace
 
 void trace_batch(const CpuScene& scene, const Grid& grid, std::span<const Ray> rays,
-                 std::span<Hit> hits, Progress* progress) {
+                 std::span<Hit> hits, Work work) {
   assert(rays.size() == hits.size() && grid.levels == scene.voxels().levels());
-  scene.visit(
-      [&](const auto&, const auto& caster) { trace_all(caster, grid, rays, hits, progress); });
+  scene.visit([&](const auto&, const auto& caster) { trace_all(caster, grid, rays, hits, work); });
 }
 
 void trace_batch(const InPlaceDag& dag, const Grid& grid, std::span<const Ray> rays,
-                 std::span<Hit> hits, Progress* progress) {
+                 std::span<Hit> hits, Work work) {
   assert(rays.size() == hits.size() && grid.levels == dag.levels());
-  trace_all(PacketCaster<InPlaceDag>(dag), grid, rays, hits, progress);
+  trace_all(PacketCaster<InPlaceDag>(dag), grid, rays, hits, work);
 }
 
 }  // namespace voxdag

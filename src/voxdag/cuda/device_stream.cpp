@@ -14,12 +14,8 @@ namespace {
 /// Renders tiles on the stream's device.
 class DeviceTiles : public StreamedTiles {
  public:
-  DeviceTiles(DeviceStream& stream, RenderPlan& plan, const RenderOptions& options,
-              Progress* progress)
-      : stream_(stream),
-        plan_(plan),
-        progress_(progress),
-        picture_(stream.blocks(), plan, options, progress) {}
+  DeviceTiles(DeviceStream& stream, RenderPlan& plan, const RenderOptions& options, Work work)
+      : stream_(stream), plan_(plan), work_(work), picture_(stream.blocks(), plan, options, work) {}
 
   std::vector<ViewTile> all() const override {
     std::vector<std::uint32_t> indices(picture_.tile_count());
@@ -50,8 +46,7 @@ class DeviceTiles : public StreamedTiles {
         render_sample(part, static_cast<int>(sample), [&](std::size_t waiting) {
           const auto done =
               static_cast<double>(begin * samples + part.size() * (sample + 1) - waiting);
-          if (progress_ != nullptr)
-            progress_->report("stream", done / static_cast<double>(indices.size() * samples));
+          work_.report("stream", done / static_cast<double>(indices.size() * samples));
         });
       begin += part.size();
     }
@@ -111,7 +106,7 @@ class DeviceTiles : public StreamedTiles {
 
   DeviceStream& stream_;
   RenderPlan& plan_;
-  Progress* progress_;
+  Work work_;
   PartialPicture picture_;
 };
 
@@ -136,10 +131,9 @@ std::vector<std::size_t> DeviceStream::want_missed() {
 }
 
 RenderedImage render_streamed(DeviceStream& stream, const Grid& grid, const RenderOptions& options,
-                              const std::function<void(const RenderedImage&)>& on_pass,
-                              Progress* progress) {
+                              const std::function<void(const RenderedImage&)>& on_pass, Work work) {
   RenderPlan plan(stream.source().view(), grid, options);
-  DeviceTiles tiles(stream, plan, options, progress);
+  DeviceTiles tiles(stream, plan, options, work);
   return render_passes(stream.source(), tiles, plan, options, on_pass);
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/cpu/stream/streamed_image.hpp"
 #include "voxdag/cuda/device_blocks.hpp"
 
@@ -41,6 +42,6 @@ class DeviceStream {
 /// like the version for the CPU, and Error if the device fails or its memory is too small.
 RenderedImage render_streamed(DeviceStream& stream, const Grid& grid, const RenderOptions& options,
                               const std::function<void(const RenderedImage&)>& on_pass = {},
-                              Progress* progress = nullptr);
+                              Work work = {});
 
 }  // namespace voxdag

@@ -39,8 +39,7 @@ std::uint8_t* DeviceBlocks::wanted() const { refuse(); }
 std::vector<std::size_t> DeviceBlocks::take_wanted() const { refuse(); }
 
 struct PartialPicture::State {};
-PartialPicture::PartialPicture(const DeviceBlocks&, const RenderPlan&, const RenderOptions&,
-                               Progress*) {
+PartialPicture::PartialPicture(const DeviceBlocks&, const RenderPlan&, const RenderOptions&, Work) {
   refuse();
 }
 std::uint32_t PartialPicture::tile_count() const { refuse(); }
@@ -57,7 +56,7 @@ void PartialPicture::copy_to(RenderedImage&) const { refuse(); }
 
 struct CudaTracer::State {};
 CudaTracer::CudaTracer(const DeviceScene&, const Grid&) { refuse(); }
-void CudaTracer::trace(std::span<const Ray>, std::span<Hit>, Progress*) const { refuse(); }
+void CudaTracer::trace(std::span<const Ray>, std::span<Hit>, Work) const { refuse(); }
 
 struct TimedCasts::State {};
 TimedCasts::TimedCasts(const DeviceScene&, std::span<const CastRay>) { refuse(); }
@@ -70,7 +69,7 @@ TimedBeams::TimedBeams(const DeviceScene&, const RenderSetup&) { refuse(); }
 double TimedBeams::run() const { refuse(); }
 std::vector<float> TimedBeams::starts() const { refuse(); }
 
-RenderedImage render_image(const DeviceScene&, const Grid&, const RenderOptions&, Progress*,
+RenderedImage render_image(const DeviceScene&, const Grid&, const RenderOptions&, Work,
                            const ViewSource*) {
   refuse();
 }

@@ -17,11 +17,11 @@ constexpr const char* kTiles = "the list of tiles";
 
 struct PartialPicture::State {
   State(const DeviceBlocks& blocks_in, const RenderPlan& plan, const RenderOptions& options,
-        Progress* progress_in)
+        Work work_in)
       : blocks(blocks_in),
         frame(plan, options.beams, options.filter),
         has_beams(options.beams),
-        progress(progress_in),
+        work(work_in),
         tile_count(block_count(options.width, options.height)),
         tiles(make_device_buffer<std::uint32_t>(tile_count, kTiles)),
         missed(make_device_buffer<std::uint8_t>(tile_count, kTiles)),
@@ -57,7 +57,7 @@ struct PartialPicture::State {
   DeviceBlocks blocks;
   DeviceFrame frame;
   bool has_beams;
-  Progress* progress;
+  Work work;
   std::uint32_t tile_count;
   DeviceBuffer<std::uint32_t> tiles;  ///< Those of a call of render().
   DeviceBuffer<std::uint8_t> missed;  ///< For each of them, whether its rays missed blocks.
@@ -68,9 +68,9 @@ struct PartialPicture::State {
 };
 
 PartialPicture::PartialPicture(const DeviceBlocks& blocks, const RenderPlan& plan,
-                               const RenderOptions& options, Progress* progress) {
+                               const RenderOptions& options, Work work) {
   blocks.make_current();
-  state_ = std::make_shared<State>(blocks, plan, options, progress);
+  state_ = std::make_shared<State>(blocks, plan, options, work);
 }
 
 std::uint32_t PartialPicture::tile_count() const { return state_->tile_count; }
@@ -83,7 +83,7 @@ void PartialPicture::cast_beams() const {
   const State& state = *state_;
   if (!state.has_beams) return;
   state.blocks.make_current();
-  for_beams(state.frame.setup().camera, state.stream, state.progress,
+  for_beams(state.frame.setup().camera, state.stream, state.work,
             [&](std::uint32_t first, std::uint32_t last) {
               launch_beams(state.voxels(), state.frame.setup(), first, last,
                            state.frame.beam_starts(), state.stream.get());
@@ -102,7 +102,7 @@ std::vector<std::uint32_t> PartialPicture::render(std::span<const std::uint32_t>
                                   setup.settings.samples_per_pixel);
   const CudaEvent begin, end;
   while (const auto range = plan.next()) {
-    if (state.progress != nullptr) state.progress->throw_if_cancelled();
+    state.work.poll();
     begin.record(state.stream);
     launch_partial_render(state.blocks.view(), setup, *range, state.tiles.data(),
                           state.blocks.wanted(), state.missed.data(), state.frame.rays(),
@@ -110,8 +110,7 @@ std::vector<std::uint32_t> PartialPicture::render(std::span<const std::uint32_t>
     end.record(state.stream);
     state.stream.wait("rendering");
     plan.measured(*range, seconds_between(begin, end));
-    if (state.progress != nullptr && stage != nullptr)
-      state.progress->report(stage, plan.fraction());
+    if (stage != nullptr) state.work.report(stage, plan.fraction());
   }
   copy_to_host(missed.data(), state.missed.data(), missed.size());
   std::vector<std::uint32_t> left;
@@ -130,7 +129,7 @@ std::size_t PartialPicture::resume(std::span<const std::uint32_t> tiles, int sam
                                    bool begins) const {
   State& state = *state_;
   assert(tiles.size() <= most_resumed());
-  if (state.progress != nullptr) state.progress->throw_if_cancelled();
+  state.work.poll();
   state.blocks.make_current();
   const auto count = static_cast<std::uint32_t>(tiles.size());
   const PixelLogs logs = state.logs(count, most_resumed());
@@ -151,7 +150,7 @@ std::size_t PartialPicture::resume(std::span<const std::uint32_t> tiles, int sam
 void PartialPicture::count_steps() const {
   const State& state = *state_;
   state.blocks.make_current();
-  for_beams(state.frame.setup().camera, state.stream, state.progress,
+  for_beams(state.frame.setup().camera, state.stream, state.work,
             [&](std::uint32_t first, std::uint32_t last) {
               launch_steps(state.voxels(), state.frame.setup(), first, last, state.stream.get());
             });

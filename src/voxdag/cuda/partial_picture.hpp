@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/cuda/device_blocks.hpp"
 #include "voxdag/render/render_plan.hpp"
 #include "voxdag/render/tile.hpp"
@@ -16,10 +16,9 @@ namespace voxdag {
 /// render_pixel.hpp.
 class PartialPicture {
  public:
-  /// `progress` may be null; it can cancel the work. It and `plan` must outlive this object. Throws
-  /// Error if there is not enough memory.
+  /// `plan` must outlive this object. Throws Error if there is not enough memory.
   PartialPicture(const DeviceBlocks& blocks, const RenderPlan& plan, const RenderOptions& options,
-                 Progress* progress);
+                 Work work);
 
   /// Returns the number of tiles; they are counted row by row.
   std::uint32_t tile_count() const;

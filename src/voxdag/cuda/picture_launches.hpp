@@ -2,7 +2,7 @@
 /// The launches of a picture's kernels.
 #include <algorithm>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/cuda/launch_plan.hpp"
 #include "voxdag/cuda/render_pixel.hpp"
 #include "voxdag/cuda/stream.hpp"
@@ -29,14 +29,13 @@ inline LaunchPlan plan_launches(const RenderSetup& setup, std::uint32_t blocks,
 
 /// Calls launch(first, last) for all coarse beams of a picture, and waits after each call.
 template <class Launch>
-void for_beams(const Camera& camera, const CudaStream& stream, const Progress* progress,
-               const Launch& launch) {
+void for_beams(const Camera& camera, const CudaStream& stream, Work work, const Launch& launch) {
   constexpr std::uint32_t kBeamsPerLaunch = 1 << 18;
   const auto across = static_cast<std::uint32_t>(beams_across(camera.width) / 2);
   const auto down = static_cast<std::uint32_t>(beams_across(camera.height) / 2);
   const std::uint32_t count = across * down;
   for (std::uint32_t first = 0; first < count; first += kBeamsPerLaunch) {
-    if (progress != nullptr) progress->throw_if_cancelled();
+    work.poll();
     launch(first, std::min(count, first + kBeamsPerLaunch));
     stream.wait("casting beams");
   }

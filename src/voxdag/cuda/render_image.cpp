@@ -32,7 +32,7 @@ void fill(SourceSamples& samples, const ViewSource& source, const RenderSetup& s
   });
 }
 
-void render_pixels(const DeviceVoxels& dag, const DeviceFrame& frame, Progress* progress,
+void render_pixels(const DeviceVoxels& dag, const DeviceFrame& frame, Work work,
                    const ViewSource* source) {
   const RenderSetup& setup = frame.setup();
   const bool has_source = source != nullptr;
@@ -51,7 +51,7 @@ void render_pixels(const DeviceVoxels& dag, const DeviceFrame& frame, Progress* 
   auto range = plan.next();
   if (has_source && range) fill(samples[turn], *source, setup, *range);
   while (range) {
-    if (progress != nullptr) progress->throw_if_cancelled();
+    work.poll();
     begin.record(stream);
     if (has_source)
       check_cuda(cudaMemcpyAsync(
@@ -67,7 +67,7 @@ void render_pixels(const DeviceVoxels& dag, const DeviceFrame& frame, Progress* 
     if (has_source && next) fill(samples[turn], *source, setup, *next);
     stream.wait("rendering");
     plan.measured(*range, seconds_between(begin, end));
-    if (progress != nullptr) progress->report("render", fraction);
+    work.report("render", fraction);
     range = next;
   }
 }
@@ -75,7 +75,7 @@ void render_pixels(const DeviceVoxels& dag, const DeviceFrame& frame, Progress* 
 }  // namespace
 
 RenderedImage render_image(const DeviceScene& scene, const Grid& grid, const RenderOptions& options,
-                           Progress* progress, const ViewSource* source) {
+                           Work work, const ViewSource* source) {
   assert(grid.levels == scene.host().levels());
   scene.make_current();
   RenderPlan plan(scene.host(), grid, options);
@@ -84,12 +84,12 @@ RenderedImage render_image(const DeviceScene& scene, const Grid& grid, const Ren
   const RenderSetup& setup = frame.setup();
   const CudaStream stream;
   if (with_beams)
-    for_beams(setup.camera, stream, progress, [&](std::uint32_t first, std::uint32_t last) {
+    for_beams(setup.camera, stream, work, [&](std::uint32_t first, std::uint32_t last) {
       launch_beams(scene.view(), setup, first, last, frame.beam_starts(), stream.get());
     });
-  render_pixels(scene.view(), frame, progress, source);
+  render_pixels(scene.view(), frame, work, source);
   if (options.with_steps)
-    for_beams(setup.camera, stream, progress, [&](std::uint32_t first, std::uint32_t last) {
+    for_beams(setup.camera, stream, work, [&](std::uint32_t first, std::uint32_t last) {
       launch_steps(scene.view(), setup, first, last, stream.get());
     });
   const bool is_filtered = options.filter != FilterKind::kNone && source == nullptr;

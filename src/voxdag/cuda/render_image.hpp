@@ -1,6 +1,6 @@
 #pragma once
 /// Renders a picture of voxels on a CUDA device.
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/cuda/device_scene.hpp"
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/view_source.hpp"
@@ -12,6 +12,6 @@ namespace voxdag {
 /// Throws Error for options out of range, if the device fails, and if its memory is too small.
 /// Throws Cancelled.
 RenderedImage render_image(const DeviceScene& scene, const Grid& grid, const RenderOptions& options,
-                           Progress* progress = nullptr, const ViewSource* source = nullptr);
+                           Work work = {}, const ViewSource* source = nullptr);
 
 }  // namespace voxdag

@@ -64,7 +64,7 @@ CudaTracer::CudaTracer(const DeviceScene& dag, const Grid& grid) {
   state_ = std::make_shared<State>(dag, grid);
 }
 
-void CudaTracer::trace(std::span<const Ray> rays, std::span<Hit> hits, Progress* progress) const {
+void CudaTracer::trace(std::span<const Ray> rays, std::span<Hit> hits, Work work) const {
   assert(rays.size() == hits.size());
   state_->dag.make_current();
   std::size_t turn = 0;
@@ -75,15 +75,13 @@ void CudaTracer::trace(std::span<const Ray> rays, std::span<Hit> hits, Progress*
     block.count = 0;
   }
   for (std::size_t begin = 0; begin < rays.size(); begin += kBlock) {
-    if (progress != nullptr) progress->throw_if_cancelled();
+    work.poll();
     RayBlock& block = next();
     if (block.count > 0) state_->receive(block, hits);
     block.begin = begin;
     block.count = std::min(kBlock, rays.size() - begin);
     state_->send(block, rays.subspan(begin, block.count));
-    if (progress != nullptr)
-      progress->report("trace", static_cast<double>(begin) / static_cast<double>(rays.size()),
-                       begin);
+    work.report_done("trace", begin, rays.size());
   }
   for (std::size_t i = 0; i < state_->blocks.size(); ++i)
     if (RayBlock& block = next(); block.count > 0) state_->receive(block, hits);

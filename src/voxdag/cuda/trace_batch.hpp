@@ -4,7 +4,7 @@
 #include <span>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/cuda/device_scene.hpp"
 #include "voxdag/trace/hit.hpp"
 #include "voxdag/trace/ray.hpp"
@@ -22,7 +22,7 @@ class CudaTracer {
   /// Sets hits[i] to the first voxel of the DAG along rays[i], which is in world units. The hits
   /// equal those of trace_batch() on the CPU, to the bit. The spans must have equal length. Throws
   /// Cancelled, and Error if the device fails.
-  void trace(std::span<const Ray> rays, std::span<Hit> hits, Progress* progress = nullptr) const;
+  void trace(std::span<const Ray> rays, std::span<Hit> hits, Work work = {}) const;
 
  private:
   struct State;

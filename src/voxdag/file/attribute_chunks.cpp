@@ -7,8 +7,7 @@
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
-#include "voxdag/stored/attributes/validate_material_ids.hpp"
-#include "voxdag/stored/attributes/validate_value_pages.hpp"
+#include "voxdag/stored/attributes/validate_pages.hpp"
 
 namespace voxdag {
 namespace {

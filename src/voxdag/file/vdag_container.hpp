@@ -31,8 +31,8 @@ VdagKind vdag_kind(const std::filesystem::path& path);
 class VdagContainer {
  public:
   /// Opens the file, and reads it unless its first bytes show that it is no container. Checks
-  /// nothing else. `memory`, which may be null, counts the copied bytes as long as an object shares
-  /// them. Throws Error(path, place, reason) for a file that cannot be read, and OverMemory.
+  /// nothing else. `memory` counts the copied bytes as long as an object shares them. Throws
+  /// Error(path, place, reason) for a file that cannot be read, and OverMemory.
   explicit VdagContainer(const std::filesystem::path& path, MemoryBudget* memory = nullptr);
 
   const std::filesystem::path& path() const { return path_; }

@@ -60,7 +60,7 @@ class MipPyramid {
 
   /// Returns the bilinearly interpolated value of a level.
   Value sample(int level, Vec2f uv) const {
-    const Level& l = levels_[static_cast<std::size_t>(level)];
+    const Level& l = levels_[level];
     return bilinear(l, reduced(uv.x, wrap_u_) * static_cast<float>(l.width) - 0.5f,
                     reduced(uv.y, wrap_v_) * static_cast<float>(l.height) - 0.5f);
   }
@@ -112,7 +112,7 @@ class MipPyramid {
     const float length = std::sqrt(axis.x * axis.x + axis.y * axis.y);
     axis = length > 0 ? axis * (1 / length) : Vec2f{1, 0};
     // From here on, lengths are in texels of the level.
-    const Level& l = levels_[static_cast<std::size_t>(level)];
+    const Level& l = levels_[level];
     const auto lw = static_cast<float>(l.width), lh = static_cast<float>(l.height);
     const Vec2f along{axis.x * step1 * (lw / w), axis.y * step1 * (lh / h)};
     const Vec2f across{-axis.y * step2 * (lw / w), axis.x * step2 * (lh / h)};
@@ -141,7 +141,7 @@ class MipPyramid {
     const auto extent = static_cast<unsigned>(std::max(x.last - x.first, y.last - y.first));
     const int wanted = extent > 2 ? static_cast<int>(std::bit_width((extent - 1) / 2)) : 0;
     const int level = std::min(wanted, level_count() - 1);
-    const Level& l = levels_[static_cast<std::size_t>(level)];
+    const Level& l = levels_[level];
     if (level > 0) {
       x = at_level(x, width(), l.width);
       y = at_level(y, height(), l.height);
@@ -293,7 +293,7 @@ class MipPyramid {
     std::vector<Cover> covers(static_cast<std::size_t>(half));
     const double ratio = static_cast<double>(size) / half;
     for (int i = 0; i < half; ++i) {
-      Cover& cover = covers[static_cast<std::size_t>(i)];
+      Cover& cover = covers[i];
       const double lo = i * ratio, hi = i + 1 == half ? size : (i + 1) * ratio;
       cover.first = static_cast<int>(lo);
       for (int k = cover.first; k < hi; ++k)

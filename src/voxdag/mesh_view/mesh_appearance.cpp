@@ -28,11 +28,11 @@ MeshAppearance::MeshAppearance(const Mesh& mesh, const MeshViewOptions& options)
 
 MeshAppearance::MeshAppearance(const Mesh& mesh, Appearance appearance,
                                const MeshViewOptions& options, std::vector<std::string>* warnings,
-                               Progress* progress)
+                               Work work)
     : albedo_(options.albedo),
       appearance_(std::move(appearance)),
       has_colors_(voxdag::has_colors(*appearance_)) {
-  shading_.emplace(mesh, *appearance_, warnings, progress);
+  shading_.emplace(mesh, *appearance_, warnings, work);
   bool all_have_normals = true;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     has_holes_ |= shading_->may_be_alpha_masked(static_cast<std::uint32_t>(t));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
 #include "voxdag/mesh_view/packed_normal.hpp"
 
@@ -29,7 +30,7 @@ class MeshAppearance {
   /// `mesh` must outlive this object. Decodes the textures; those that cannot be read are ignored,
   /// with a warning (see SurfaceShading). Throws Cancelled.
   MeshAppearance(const Mesh& mesh, Appearance appearance, const MeshViewOptions& options,
-                 std::vector<std::string>* warnings, Progress* progress);
+                 std::vector<std::string>* warnings, Work work);
   // Not copyable: the shading points to the appearance.
   MeshAppearance(const MeshAppearance&) = delete;
   MeshAppearance& operator=(const MeshAppearance&) = delete;

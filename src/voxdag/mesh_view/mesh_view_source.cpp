@@ -52,9 +52,9 @@ class MeshViewSource::Scene {
   Scene(Mesh mesh, const MeshViewOptions& options)
       : embree_(std::move(mesh), EmbreeMode::kRobust), appearance_(embree_.mesh(), options) {}
   Scene(Mesh mesh, Appearance appearance, const MeshViewOptions& options,
-        std::vector<std::string>* warnings, Progress* progress)
+        std::vector<std::string>* warnings, Work work)
       : embree_(std::move(mesh), EmbreeMode::kRobust),
-        appearance_(embree_.mesh(), std::move(appearance), options, warnings, progress) {}
+        appearance_(embree_.mesh(), std::move(appearance), options, warnings, work) {}
 
   /// Casts the rays of up to 4×4 pixels.
   void sample_packet(const Camera& camera, const ViewTile& tile, int x0, int y0,
@@ -113,7 +113,7 @@ ViewSample MeshViewSource::Scene::view_sample(const Camera& camera, double x, do
     const double dx = i == 0 || i == 3 ? -0.5 : 0.5, dy = i < 2 ? -0.5 : 0.5;
     const auto met =
         meet_plane(corners, embree_.from_world(camera.eye), camera.direction(x + dx, y + dy));
-    footprint[static_cast<std::size_t>(i)] = to_float(into_triangle(met.value_or(at)));
+    footprint[i] = to_float(into_triangle(met.value_or(at)));
   }
   sample.albedo = appearance_.albedo(triangle, footprint);
 
@@ -184,9 +184,9 @@ MeshViewSource::MeshViewSource(Mesh mesh, const MeshViewOptions& options)
     : scene_(std::make_unique<Scene>(std::move(mesh), options)) {}
 
 MeshViewSource::MeshViewSource(Mesh mesh, Appearance appearance, const MeshViewOptions& options,
-                               std::vector<std::string>* warnings, Progress* progress)
+                               std::vector<std::string>* warnings, Work work)
     : scene_(std::make_unique<Scene>(std::move(mesh), std::move(appearance), options, warnings,
-                                     progress)) {}
+                                     work)) {}
 
 MeshViewSource::~MeshViewSource() = default;
 

@@ -3,6 +3,7 @@
 /// Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013, section 4.
 #include <memory>
 
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh_view/mesh_appearance.hpp"
 #include "voxdag/render/view_source.hpp"
 
@@ -20,7 +21,7 @@ class MeshViewSource : public ViewSource {
   explicit MeshViewSource(Mesh mesh, const MeshViewOptions& options = {});
   /// Also takes the appearance from the mesh's file. `warnings` is as in SurfaceShading.
   MeshViewSource(Mesh mesh, Appearance appearance, const MeshViewOptions& options,
-                 std::vector<std::string>* warnings = nullptr, Progress* progress = nullptr);
+                 std::vector<std::string>* warnings = nullptr, Work work = {});
   ~MeshViewSource() override;
 
   void sample(const Camera& camera, const ViewTile& tile,

@@ -21,7 +21,7 @@ MeshViewSource::MeshViewSource(Mesh /*mesh*/, const MeshViewOptions& /*options*/
 
 MeshViewSource::MeshViewSource(Mesh /*mesh*/, Appearance /*appearance*/,
                                const MeshViewOptions& /*options*/,
-                               std::vector<std::string>* /*warnings*/, Progress* /*progress*/) {
+                               std::vector<std::string>* /*warnings*/, Work /*work*/) {
   refuse();
 }
 

@@ -1,11 +1,26 @@
 #pragma once
 /// Counts the steps of primary rays: the measure of Laine and Karras, "Efficient Sparse Voxel
 /// Octrees", I3D 2010, Figure 9.
+#include <cstdint>
+
+#include "voxdag/core/host_device.hpp"
 #include "voxdag/render/primary_beams.hpp"
 #include "voxdag/render/voxel_view_samples.hpp"
-#include "voxdag/trace/counting_nodes.hpp"
 
 namespace voxdag {
+
+/// A node layout that behaves like `Nodes` and counts the steps of walks.
+template <class Nodes>
+class CountingNodes : public Nodes {
+ public:
+  VOXDAG_HD CountingNodes(const Nodes& nodes, std::uint32_t& steps)
+      : Nodes(nodes), steps_(&steps) {}
+
+  VOXDAG_HD void on_step() const { ++*steps_; }
+
+ private:
+  std::uint32_t* steps_;
+};
 
 /// Sets setup.image.steps of the 8×8 pixels at (x,y) to the steps of their first samples' rays. If
 /// setup.beam_starts is set, each pixel also gets an equal part of its beams' steps.

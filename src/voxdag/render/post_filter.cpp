@@ -22,7 +22,7 @@ FilterSample sample_at(int x, int y) {
 float room(const FilterTable& table, int count, const FilterSample& at) {
   float least = INFINITY;
   for (int i = 0; i < count; ++i) {
-    const FilterSample& other = table[static_cast<std::size_t>(i)];
+    const FilterSample& other = table[i];
     const float apart =
         length(static_cast<float>(at.x - other.x), static_cast<float>(at.y - other.y));
     least = std::min(least, apart / spacing(0.5f * (at.distance + other.distance)));
@@ -82,7 +82,7 @@ FilterTable make_filter_table() {
     const float within = (static_cast<float>(count) + 1.0f) / kFilterSamples;
     const FilterSample sample =
         roomiest(table, count, kFilterRadius * std::pow(within, 2.0f / 3.0f) - 0.2f);
-    table[static_cast<std::size_t>(count)] = sample;
+    table[count] = sample;
     if (count + 1 < kFilterSamples)
       table[static_cast<std::size_t>(count) + 1] = sample_at(-sample.x, -sample.y);
   }

@@ -13,7 +13,8 @@
 namespace voxdag {
 namespace {
 
-void check(const RenderOptions& options) {
+/// Returns the options. Throws Error if one is out of range.
+const RenderOptions& checked(const RenderOptions& options) {
   constexpr int kMaxSide = 1 << 16, kMaxSamples = 1 << 16;
   if (options.width < 1 || options.height < 1 || options.width > kMaxSide ||
       options.height > kMaxSide)
@@ -36,10 +37,11 @@ void check(const RenderOptions& options) {
     throw Error("the sun's angle must be at least 0 and below 90 degrees");
   if (!(options.sky >= 0 && options.sky < HUGE_VALF))
     throw Error("the sky's factor must be finite and not negative");
-  if (options.lights.size() >= static_cast<std::size_t>(RenderSetup::kMaxLights))
+  if (options.lights.size() >= RenderSetup::kMaxLights)
     throw Error("a picture can have at most 15 lights besides the sun");
   if (options.tile_size < 1 || options.tile_size > 32)
     throw Error("tiles must have 1 to 32 pixels a side");
+  return options;
 }
 
 /// Returns the number of rays per view sample, for `per_pixel` rays in a pixel with
@@ -48,11 +50,13 @@ int per_view_sample(int per_pixel, int samples_per_pixel) {
   return (per_pixel + samples_per_pixel - 1) / samples_per_pixel;
 }
 
+/// Returns sample sets for the rays of a pixel: as many for each view sample.
 SampleSets make_samples(const RenderOptions& options) {
-  check(options);
-  const int samples = options.samples_per_pixel;
-  return {per_view_sample(options.shadow_samples, samples) * samples,
-          std::max(1, per_view_sample(options.occlusion_samples, samples) * samples)};
+  const int view_samples = options.samples_per_pixel;
+  const int light_rays = view_samples * per_view_sample(options.shadow_samples, view_samples);
+  const int occlusion_rays =
+      view_samples * per_view_sample(options.occlusion_samples, view_samples);
+  return {light_rays, std::max(1, occlusion_rays)};
 }
 
 /// Returns the sky with the sun's direction. The default direction shows the shapes in view well.
@@ -100,7 +104,7 @@ RaySection make_section(const Grid& grid, const SectionOptions& options) {
 }  // namespace
 
 RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOptions& options)
-    : samples_(make_samples(options)), exposure_(options.exposure) {
+    : samples_(make_samples(checked(options))), exposure_(options.exposure) {
   assert(grid.levels == voxels.levels());
   const std::size_t pixels =
       static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);

@@ -5,23 +5,26 @@
 
 namespace voxdag {
 
-/// The cosines of is_of_back().
+/// The rule of is_of_back(): cosines of angles.
 struct BackRule {
-  /// A normal belongs to the back if it points away from the viewer by more than kLeaning, or at
-  /// all if it points into the cube by more than kOpposite.
-  static constexpr float kLeaning = 0.2f, kOpposite = 0.8f;
+  /// A normal is of the back if it points away from the viewer by more than this.
+  static constexpr float kLeaning = 0.2f;
+  /// A normal that points away from the viewer at all is of the back if it points into the cube by
+  /// more than this.
+  static constexpr float kOpposite = 0.8f;
 };
 
 /// Returns whether the stored normal of a cube belongs to the side of the surface that the viewer
 /// does not see. `view` points to the viewer, `entered` is the normal of the cube's entered face;
 /// all have unit length.
+///
+/// Surfaces are visible from both sides, and the entered face does not tell reliably which side is
+/// seen. At outlines, where most cube faces are visible, a normal of the front can point away from
+/// the viewer a little, but not straight into the cube from the entered face.
 VOXDAG_HD inline bool is_of_back(Vec3f normal, Vec3f view, Vec3f entered) {
-  // Surfaces are visible from both sides. The entered face does not tell reliably which side is
-  // seen. At outlines, where most cube faces are visible, the normal may point away from the viewer
-  // a little. It may not point straight into the cube from the entered face.
-  const float facing = dot(normal, view);
-  return facing < -BackRule::kLeaning ||
-         (facing < 0 && dot(normal, entered) < -BackRule::kOpposite);
+  const float facing = dot(normal, view), outward = dot(normal, entered);
+  if (facing < -BackRule::kLeaning) return true;
+  return facing < 0 && outward < -BackRule::kOpposite;
 }
 
 /// Sets the colour and the normal for shading of a sample at cell `cell` of `level` to those that

@@ -13,7 +13,6 @@
 /// the current cell is the cell of its level that the ray is in at `t`.
 #include "voxdag/trace/cell_walk.hpp"
 #include "voxdag/trace/hit.hpp"
-#include "voxdag/trace/node_path.hpp"
 
 namespace voxdag {
 

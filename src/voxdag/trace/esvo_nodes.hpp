@@ -52,11 +52,9 @@ class ContourNodes : public EsvoNodes {
   using EsvoNodes::EsvoNodes;
 };
 
-/// A layout whose leaves are of any level and may have contours.
+/// A node layout of an ESVO: leaves are of any level, and its rays hit EsvoHit.
 template <class Nodes>
-concept EsvoLayout = requires {
-  { Nodes::kWithContours } -> std::convertible_to<bool>;
-};
+concept EsvoLayout = std::derived_from<Nodes, EsvoNodes>;
 
 /// Returns whether child `index`, present in `node` of `level`, is a voxel or a coarser leaf.
 template <class Nodes>

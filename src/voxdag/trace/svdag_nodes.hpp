@@ -9,8 +9,8 @@
 ///   child_mask(n, l)    the 8-bit child mask of node n of level l
 ///   child(n, l, i)      child i, which is present, of node n of level l < L-1
 /// Children of nodes of level L-1 are voxels: a bit in the mask and nothing else. A layout may also
-/// have on_step(), called at each step of a walk: see counting_nodes.hpp; and Path: see
-/// node_path.hpp.
+/// have on_step(), called at each step of a walk: see render/count_steps.hpp; and Path: see
+/// cell_walk.hpp.
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {

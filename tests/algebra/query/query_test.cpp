@@ -85,7 +85,7 @@ TEST(DistanceField, HasTheDistancesOfCentres) {
     SCOPED_TRACE(set.name);
     const Svdag dag = brute_svdag(4, set.voxels);
     const Box3i box{{-3, 4, 2}, {18, 12, 19}};
-    const std::vector<float> distances = distance_field(dag.view(), box, nullptr);
+    const std::vector<float> distances = distance_field(dag.view(), box, {});
     std::size_t i = 0;
     for (std::int32_t z = box.lo.z; z < box.hi.z; ++z)
       for (std::int32_t y = box.lo.y; y < box.hi.y; ++y)
@@ -113,7 +113,7 @@ TEST(HeightMap, HasTheOutermostVoxelOfEachColumn) {
             const bool is_farther = end == HeightSide::kHigh ? v[axis] > height : v[axis] < height;
             if (height < 0 || is_farther) height = v[axis];
           }
-          ASSERT_EQ(height_map(dag.view(), axis, end, nullptr), expected)
+          ASSERT_EQ(height_map(dag.view(), axis, end, {}), expected)
               << set.name << ", " << levels << " levels, axis " << axis;
         }
     }
@@ -125,7 +125,7 @@ TEST(SurfaceArea, CountsTheFacesThatNoOtherVoxelTouches) {
       const Svdag dag = brute_svdag(levels, set.voxels);
       std::set<std::array<int, 3>> all;
       for (const Vec3i v : set.voxels) all.insert({v.x, v.y, v.z});
-      const VoxelSurface surface = surface_of(dag.view(), nullptr, nullptr);
+      const VoxelSurface surface = surface_of(dag.view(), {});
       EXPECT_EQ(surface.voxels, all.size());
       for (int axis = 0; axis < 3; ++axis) {
         std::uint64_t faces = 0;

@@ -200,8 +200,7 @@ TEST(FilterCells, AMemoryLimitIsKeptOrRefused) {
   options.colors = true;
   options.finest_level = 7;
   expect_limit_is_kept_or_refused([&](MemoryBudget& budget) {
-    options.memory = &budget;
-    build_attributes(scene.mesh, scene.grid, dag.view(), &shading, options);
+    build_attributes(scene.mesh, scene.grid, dag.view(), &shading, options, &budget);
   });
 }
 

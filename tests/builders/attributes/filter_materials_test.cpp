@@ -14,7 +14,7 @@
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
 #include "voxdag/stored/attributes/material_colors.hpp"
-#include "voxdag/stored/attributes/validate_material_ids.hpp"
+#include "voxdag/stored/attributes/validate_pages.hpp"
 
 namespace voxdag {
 namespace {
@@ -126,8 +126,7 @@ TEST(FilterMaterials, AMemoryLimitIsKeptOrRefused) {
   options.materials = true;
   options.finest_level = 7;
   expect_limit_is_kept_or_refused([&](MemoryBudget& budget) {
-    options.memory = &budget;
-    build_attributes(scene.mesh, scene.grid, dag.view(), nullptr, options);
+    build_attributes(scene.mesh, scene.grid, dag.view(), nullptr, options, &budget);
   });
 }
 

@@ -1,11 +1,10 @@
-#include "voxdag/builders/dag/build_range.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "support/random_triangles.hpp"
 #include "voxdag/algebra/combine.hpp"
+#include "voxdag/builders/dag/build_methods.hpp"
 
 namespace voxdag {
 namespace {

@@ -55,8 +55,6 @@ std::vector<QuantizedTriangle> random_triangles(std::mt19937_64& random, int lev
   return triangles;
 }
 
-constexpr BuildOptions kBySorting{BuildMethod::kSort, nullptr};
-
 TEST(BuildSvdag, IsTheMinimalDagOfTheBruteForceCover) {
   std::mt19937_64 random(1);
   for (int round = 0; round < 400; ++round) {
@@ -65,7 +63,8 @@ TEST(BuildSvdag, IsTheMinimalDagOfTheBruteForceCover) {
     const Svdag expected = brute_force(triangles, levels);
     const Mesh mesh = mesh_of(triangles);
     ASSERT_EQ(build_svdag(mesh, unit_grid(levels)).dag, expected) << "round " << round;
-    ASSERT_EQ(build_svdag(mesh, unit_grid(levels), kBySorting).dag, expected) << "round " << round;
+    ASSERT_EQ(build_svdag(mesh, unit_grid(levels), BuildMethod::kSort).dag, expected)
+        << "round " << round;
   }
 }
 
@@ -89,7 +88,7 @@ TEST(BuildSvdag, LargePlanarTrianglesGoThroughTheMemoUnchanged) {
     }
     const Svdag expected = brute_force(triangles, levels);
     ASSERT_EQ(build_svdag(mesh_of(triangles), unit_grid(levels)).dag, expected);
-    ASSERT_EQ(build_svdag(mesh_of(triangles), unit_grid(levels), kBySorting).dag, expected);
+    ASSERT_EQ(build_svdag(mesh_of(triangles), unit_grid(levels), BuildMethod::kSort).dag, expected);
   }
 }
 
@@ -120,7 +119,8 @@ TEST(BuildSvdag, TrianglesManyTimesLargerThanTheGridAreExactInIt) {
     const Svdag expected = brute_force(triangles, levels);
     const Mesh mesh = mesh_of(triangles);
     ASSERT_EQ(build_svdag(mesh, unit_grid(levels)).dag, expected) << "round " << round;
-    ASSERT_EQ(build_svdag(mesh, unit_grid(levels), kBySorting).dag, expected) << "round " << round;
+    ASSERT_EQ(build_svdag(mesh, unit_grid(levels), BuildMethod::kSort).dag, expected)
+        << "round " << round;
   }
 }
 
@@ -130,7 +130,7 @@ TEST(BuildSvdag, BothMethodsAgreeWhereNoDenseGridFits) {
     const Mesh mesh = mesh_of(random_triangles(random, levels, 12));
     const Svdag dag = build_svdag(mesh, unit_grid(levels)).dag;
     EXPECT_FALSE(dag.view().is_empty());
-    EXPECT_EQ(build_svdag(mesh, unit_grid(levels), kBySorting).dag, dag);
+    EXPECT_EQ(build_svdag(mesh, unit_grid(levels), BuildMethod::kSort).dag, dag);
     validate_svdag(dag.view());
     check_canonical(dag.view());
     check_minimal(dag.view());
@@ -146,14 +146,14 @@ TEST(BuildSvdag, TheWordsDependOnNeitherThreadsNorVectorWidth) {
     tbb::task_arena arena(threads);
     arena.execute([&] {
       EXPECT_EQ(build_svdag(mesh, unit_grid(levels)).dag, expected) << threads << " threads";
-      EXPECT_EQ(build_svdag(mesh, unit_grid(levels), kBySorting).dag, expected)
+      EXPECT_EQ(build_svdag(mesh, unit_grid(levels), BuildMethod::kSort).dag, expected)
           << threads << " threads";
     });
   }
   for (const auto target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);
     EXPECT_EQ(build_svdag(mesh, unit_grid(levels)).dag, expected) << hwy::TargetName(target);
-    EXPECT_EQ(build_svdag(mesh, unit_grid(levels), kBySorting).dag, expected)
+    EXPECT_EQ(build_svdag(mesh, unit_grid(levels), BuildMethod::kSort).dag, expected)
         << hwy::TargetName(target);
   }
   hwy::SetSupportedTargetsForTest(0);
@@ -163,7 +163,7 @@ TEST(BuildSvdag, TrianglesOutsideTheGridGiveNoVoxels) {
   const Mesh outside{{{20, 20, 20}, {30, 20, 20}, {20, 30, 20}}, {{0, 1, 2}}, {}, {}};
   for (const BuildMethod method :
        {BuildMethod::kHashConsed, BuildMethod::kSort, BuildMethod::kPaper}) {
-    const Svdag dag = build_svdag(outside, unit_grid(4), {method, nullptr}).dag;
+    const Svdag dag = build_svdag(outside, unit_grid(4), method).dag;
     EXPECT_TRUE(dag.view().is_empty());
     EXPECT_EQ(count_svdag(dag.view()).voxels, 0u);
     validate_svdag(dag.view());
@@ -176,7 +176,7 @@ TEST(BuildSvdag, ATriangleThatReachesFarOutOfTheGridIsClipped) {
       {{-1e9f, 5.5f, -1e9f}, {1e9f, 5.5f, -1e9f}, {0, 5.5f, 1e9f}}, {{0, 1, 2}}, {}, {}};
   for (const BuildMethod method :
        {BuildMethod::kHashConsed, BuildMethod::kSort, BuildMethod::kPaper}) {
-    const Svdag dag = build_svdag(mesh, unit_grid(6), {method, nullptr}).dag;
+    const Svdag dag = build_svdag(mesh, unit_grid(6), method).dag;
     EXPECT_EQ(count_svdag(dag.view()).voxels, 64u * 64u);
   }
 }
@@ -197,12 +197,24 @@ TEST(BuildSvdag, RefusesAMemoryLimitItCannotKeep) {
        {BuildMethod::kHashConsed, BuildMethod::kSort, BuildMethod::kPaper}) {
     MemoryBudget memory(1000);
     try {
-      build_svdag(mesh, unit_grid(12), {method, &memory});
+      build_svdag(mesh, unit_grid(12), method, &memory);
       FAIL();
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("memory limit"), std::string::npos);
     }
   }
+}
+
+TEST(BuildSvdag, TheResultCountsInTheGivenBudgetOnly) {
+  std::mt19937_64 random(7);
+  const Mesh mesh = mesh_of(random_triangles(random, 4, 10));
+  EXPECT_EQ(build_svdag(mesh, unit_grid(4)).memory.bytes(), 0u);
+  MemoryBudget memory;
+  {
+    const BuildResult result = build_svdag(mesh, unit_grid(4), BuildMethod::kHashConsed, &memory);
+    EXPECT_EQ(memory.used(), result.dag.view().bytes());
+  }
+  EXPECT_EQ(memory.used(), 0u);
 }
 
 TEST(BuildSvdag, StopsWhenCancelled) {
@@ -212,7 +224,7 @@ TEST(BuildSvdag, StopsWhenCancelled) {
        {BuildMethod::kHashConsed, BuildMethod::kSort, BuildMethod::kPaper}) {
     Progress progress;
     progress.cancel();
-    EXPECT_THROW(build_svdag(mesh, unit_grid(12), {method, nullptr}, &progress), Cancelled);
+    EXPECT_THROW(build_svdag(mesh, unit_grid(12), method, &progress), Cancelled);
   }
 }
 

@@ -101,9 +101,8 @@ TEST(BuildMemory, ABudgetCountsWhatABuildTakes) {
     MemoryBudget budget;
     const std::uint64_t before = resident_bytes();
     reset_peak();
-    tbb::task_arena(2).execute([&] {
-      build_svdag(test.mesh, fit_grid(test.mesh, test.levels), {test.method, &budget});
-    });
+    tbb::task_arena(2).execute(
+        [&] { build_svdag(test.mesh, fit_grid(test.mesh, test.levels), test.method, &budget); });
     const double taken = static_cast<double>(peak_bytes()) - static_cast<double>(before);
     EXPECT_LT(taken, 1.1 * static_cast<double>(budget.peak() + 6 * kMebibyte)) << test.name;
     EXPECT_EQ(budget.used(), 0u);
@@ -114,7 +113,7 @@ TEST(BuildMemory, ALimitIsKeptOrRefusedWithATrueEstimate) {
   for (const Case& test : cases()) {
     const Grid grid = fit_grid(test.mesh, test.levels);
     MemoryBudget unlimited;
-    const Svdag expected = build_svdag(test.mesh, grid, {test.method, &unlimited}).dag;
+    const Svdag expected = build_svdag(test.mesh, grid, test.method, &unlimited).dag;
     const auto needed = static_cast<double>(unlimited.peak());
     // The largest case takes most of the time, so it tries one limit only.
     const std::vector<double> parts =
@@ -122,7 +121,7 @@ TEST(BuildMemory, ALimitIsKeptOrRefusedWithATrueEstimate) {
     for (const double part : parts) {
       MemoryBudget budget(static_cast<std::uint64_t>(needed * part));
       try {
-        const Svdag dag = build_svdag(test.mesh, grid, {test.method, &budget}).dag;
+        const Svdag dag = build_svdag(test.mesh, grid, test.method, &budget).dag;
         EXPECT_EQ(dag, expected) << test.name;
       } catch (const OverMemory& refusal) {
         EXPECT_LT(part, 1) << test.name << ": " << refusal.what();

@@ -47,8 +47,8 @@ TEST_P(CrytekSponza, HasTheReferenceCounts) {
   EXPECT_EQ(dag.view().bytes(), expected.dag_bytes);
   EXPECT_EQ(check_cover(dag.view(), grid, mesh, 20000).mismatches, 0u);
   if (expected.levels == 11) {
-    EXPECT_EQ(build_svdag(mesh, grid, {BuildMethod::kSort, 0}).dag, dag);
-    EXPECT_EQ(build_svdag(mesh, grid, {BuildMethod::kPaper, 0}).dag, dag);
+    EXPECT_EQ(build_svdag(mesh, grid, BuildMethod::kSort).dag, dag);
+    EXPECT_EQ(build_svdag(mesh, grid, BuildMethod::kPaper).dag, dag);
   }
 }
 

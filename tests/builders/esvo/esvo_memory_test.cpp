@@ -26,12 +26,10 @@ const Grid kMemoryGrid{8, {0, 0, 0}, 1.0, kSubvoxels};
 
 /// Builds on four threads. Returns nothing if the memory is too small. Does not count the blocks.
 std::optional<std::vector<std::uint64_t>> build_within(const Mesh& mesh, MemoryBudget* memory) {
-  EsvoOptions options;
-  options.memory = memory;
   tbb::task_arena arena(4);
   try {
     EsvoMemory sink;
-    arena.execute([&] { build_esvo(mesh, kMemoryGrid, options, nullptr, nullptr, sink); });
+    arena.execute([&] { build_esvo(mesh, kMemoryGrid, {}, nullptr, nullptr, sink, memory); });
     return sink.take();
   } catch (const OverMemory&) {
     return std::nullopt;
@@ -70,10 +68,10 @@ TEST(EsvoMemoryLimit, DisplacementAndTexturesAreCountedWhileTheyLive) {
   const Crate crate;
   MemoryBudget memory;
   {
-    const SurfaceShading shading(crate.mesh, crate.appearance, nullptr, nullptr, &memory);
+    const SurfaceShading shading(crate.mesh, crate.appearance, nullptr, &memory);
     const DisplacedTriangles displaced(crate.mesh, crate.appearance,
                                        displace_all(crate.mesh, crate.appearance, stones(), 0.1),
-                                       nullptr, &memory);
+                                       &memory);
     EXPECT_GT(memory.used(), crate.mesh.triangles.size() * sizeof(Box3d));
   }
   EXPECT_EQ(memory.used(), 0u);

@@ -32,7 +32,7 @@ TEST(TopCells, EveryCellIsATaskOrHasChildren) {
   const std::vector<std::uint8_t> open_edges(crate.mesh.triangles.size());
   const IndexSet duplicates;
   const TopCells cells =
-      find_top_cells({grid, mesh, open_edges, &displaced, duplicates}, {}, nullptr, nullptr);
+      find_top_cells({grid, mesh, open_edges, &displaced, duplicates}, {}, nullptr, {});
   std::set<std::size_t> parents;
   for (std::size_t i = 1; i < cells.size(); ++i) parents.insert(cells[i].parent);
   int missed_by_all = 0;
@@ -59,8 +59,7 @@ TEST(TopCells, CellsWithTooManyTrianglesToLoadGetTheSameContours) {
   settings.max_error = 0;  // Cells with too many triangles are never near the surface.
   const auto contours = [&](std::size_t most_loaded) {
     std::map<std::tuple<int, int, int, int>, std::uint32_t> result;
-    for (const TopCell& cell :
-         find_top_cells(source, settings, nullptr, nullptr, nullptr, most_loaded))
+    for (const TopCell& cell : find_top_cells(source, settings, nullptr, {}, most_loaded))
       result[{cell.level, cell.cell.x, cell.cell.y, cell.cell.z}] =
           cell.decision.contour ? cell.decision.contour->bits : 0;
     return result;
@@ -88,7 +87,7 @@ TEST(TopCells, CellsOfVeryManyTrianglesHaveContours) {
   const IndexSet duplicates;
   const std::vector<std::uint8_t> open_edges = find_open_edges(mesh, duplicates);
   const TopCells cells =
-      find_top_cells({grid, mesh, open_edges, nullptr, duplicates}, {}, nullptr, nullptr);
+      find_top_cells({grid, mesh, open_edges, nullptr, duplicates}, {}, nullptr, {});
   int on_level_1 = 0;
   for (const TopCell& cell : cells) {
     if (cell.level != 1) continue;

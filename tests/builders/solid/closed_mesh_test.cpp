@@ -10,7 +10,7 @@ namespace {
 OddEdges odd_edges(const Mesh& mesh) {
   const Grid grid = fit_grid(mesh, 6);
   const QuantizedMesh quantized(mesh, grid);
-  return find_odd_edges(quantized, nullptr, nullptr);
+  return find_odd_edges(quantized, {});
 }
 
 TEST(ClosedMesh, BodiesHaveNoOddEdges) {

@@ -100,7 +100,7 @@ TEST(WindingTree, ErrorsAreWithinTheirBounds) {
   flip_triangles(mesh, 0.1, rng);
   const Grid grid = fit_grid(mesh, 6);
   const Mesh units = quantized_mesh(mesh, grid);
-  const WindingTree tree(triangles_of(mesh, grid), nullptr, nullptr);
+  const WindingTree tree(triangles_of(mesh, grid), {});
   std::uniform_real_distribution<double> place(-64 * 256, 128 * 256);
   double largest = 0;
   for (int i = 0; i < 200; ++i) {
@@ -117,7 +117,7 @@ TEST(WindingTree, ErrorsAreWithinTheirBounds) {
 }
 
 TEST(WindingTree, HasNoTrianglesToBeginWith) {
-  const WindingTree tree(PageVector<QuantizedTriangle>(), nullptr, nullptr);
+  const WindingTree tree(PageVector<QuantizedTriangle>(), {});
   EXPECT_EQ(tree.around({1, 2, 3}, 0).value, 0);
 }
 
@@ -134,9 +134,7 @@ TEST(BoundaryCaps, CloseTheMesh) {
     const Grid grid = fit_grid(mesh, 5);
     const QuantizedMesh quantized(mesh, grid);
     const Mesh units = quantized_mesh(mesh, grid);
-    const WindingTree caps(
-        cap_boundary(find_boundary_edges(quantized, nullptr, nullptr), nullptr, nullptr), nullptr,
-        nullptr);
+    const WindingTree caps(cap_boundary(find_boundary_edges(quantized, {}), {}), {});
     std::uniform_real_distribution<double> place(0, 32 * 256);
     for (int i = 0; i < 50; ++i) {
       const Vec3d point{place(rng), place(rng), place(rng)};
@@ -154,7 +152,7 @@ TEST(EdgeTree, BoundsTheChangeOfWindingNumbers) {
   const Grid grid = fit_grid(mesh, 6);
   const QuantizedMesh quantized(mesh, grid);
   const Mesh units = quantized_mesh(mesh, grid);
-  const EdgeTree edges(find_boundary_edges(quantized, nullptr, nullptr), nullptr, nullptr);
+  const EdgeTree edges(find_boundary_edges(quantized, {}), {});
   std::uniform_real_distribution<double> place(0, 64 * 256), offset(-1, 1);
   int finite = 0;
   for (int i = 0; i < 2000; ++i) {

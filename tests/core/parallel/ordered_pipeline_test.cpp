@@ -28,16 +28,16 @@ class Counted {
 };
 
 template <class Make, class Use>
-void run(std::size_t count, Progress* progress, const Make& make, const Use& use) {
+void run(std::size_t count, Work work, const Make& make, const Use& use) {
   tbb::task_arena arena(4);
-  arena.execute([&] { ordered_pipeline(count, 8, progress, make, use); });
+  arena.execute([&] { ordered_pipeline(count, 8, work, make, use); });
 }
 
 TEST(OrderedPipeline, UsesEveryResultInOrder) {
   for (const std::size_t count : {0, 1, 7, 8, 9, 1000}) {
     std::vector<std::size_t> used;
     run(
-        count, nullptr,
+        count, {},
         [](std::size_t i) {
           EXPECT_LE(alive, 8 + 4 + 1);
           return Counted(i);
@@ -56,11 +56,11 @@ TEST(OrderedPipeline, AnExceptionOfEitherSideLeavesNothingBehind) {
       if (i == bad) throw std::runtime_error("bad");
     };
     const auto make = [](std::size_t i) { return Counted(i); };
-    EXPECT_THROW(run(40, nullptr, make, [&](const Counted& result) { fail_at(result.value()); }),
+    EXPECT_THROW(run(40, {}, make, [&](const Counted& result) { fail_at(result.value()); }),
                  std::runtime_error);
     EXPECT_EQ(alive, 0);
     EXPECT_THROW(run(
-                     40, nullptr,
+                     40, {},
                      [&](std::size_t i) {
                        fail_at(i);
                        return Counted(i);

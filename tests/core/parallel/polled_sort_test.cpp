@@ -21,15 +21,15 @@ std::vector<std::uint64_t> random_values(std::size_t count) {
 
 /// Sorts `values` on four threads.
 template <class Less>
-void sort(std::vector<std::uint64_t>& values, const Progress* progress, const Less& less) {
+void sort(std::vector<std::uint64_t>& values, Work work, const Less& less) {
   tbb::task_arena arena(4);
-  arena.execute([&] { polled_sort(values.begin(), values.end(), progress, less); });
+  arena.execute([&] { polled_sort(values.begin(), values.end(), work, less); });
 }
 
 TEST(PolledSort, SortsAsTheStandardLibraryDoes) {
   for (const std::size_t count : {0, 1, 2, 499, 500, 501, 100'000}) {
     std::vector<std::uint64_t> sorted = random_values(count), expected = sorted;
-    sort(sorted, nullptr, std::greater<>());
+    sort(sorted, Work{}, std::greater<>());
     std::sort(expected.begin(), expected.end(), std::greater<>());
     EXPECT_EQ(sorted, expected) << count;
   }

@@ -21,7 +21,7 @@ TEST(AlignedModels, ResultsLieInTheGridThatHoldsThem) {
   // Voxel (1, 2, 3) of the second is voxel (5, 2, 3) of the first.
   const DagModel first = model_of(3, {{5, 2, 3}, {0, 0, 0}}, {0, 0, 0});
   const DagModel second = model_of(3, {{1, 2, 3}, {7, 7, 7}}, {4, 0, 0});
-  const AlignedModels models(first, second, nullptr, nullptr);
+  const AlignedModels models(first, second, {});
   EXPECT_EQ(models.grid().levels, 4);
   EXPECT_EQ(models.grid_of(SetOperation::kIntersection), first.grid());
   EXPECT_EQ(models.grid_of(SetOperation::kUnion), models.grid());
@@ -36,7 +36,7 @@ TEST(AlignedModels, GridsThatDoNotAlignAreRefused) {
   const DagModel first = model_of(3, {{0, 0, 0}}, {0, 0, 0});
   const DagModel second = model_of(3, {{0, 0, 0}}, {0.5, 0, 0});
   EXPECT_NE(error_of([&] {
-              AlignedModels(first, second, nullptr, nullptr);
+              AlignedModels(first, second, {});
             }).find("the grids do not align"),
             std::string::npos);
 }

@@ -14,7 +14,7 @@ namespace {
 
 /// A model with random voxels and colours.
 DagModel colored_model(const TempDir& dir, MemoryBudget* memory = nullptr) {
-  ColoredVoxelBuilder builder(6, 10000, dir.path(), nullptr, nullptr);
+  ColoredVoxelBuilder builder(6, 10000, dir.path(), {});
   for (const Vec3i v : random_voxels(6, 500, 3))
     builder.add(v, {static_cast<std::uint8_t>(4 * v.x), static_cast<std::uint8_t>(4 * v.y), 9});
   auto [dag, attributes] = builder.finish(0);
@@ -32,7 +32,7 @@ TEST(DagModel, IsReadBackFromBothForms) {
   EXPECT_EQ(model.metadata().counts.voxels, count_svdag(model.view()).voxels);
   model.save(dir / "plain.vdag", false);
   model.save(dir / "compact.vdag", true);
-  const DagModel plain(dir / "plain.vdag", nullptr), compact(dir / "compact.vdag", nullptr);
+  const DagModel plain(dir / "plain.vdag"), compact(dir / "compact.vdag");
   EXPECT_FALSE(plain.is_compact());
   EXPECT_TRUE(compact.is_compact());
   for (const DagModel* read : {&plain, &compact}) {
@@ -69,13 +69,13 @@ TEST(DagModel, CountsTheBytesOfItsFileOnce) {
     const std::uint64_t file_bytes = file.bytes().size();
     EXPECT_EQ(memory.used(), file_bytes);
     {
-      const DagModel read(file, nullptr, &memory);
+      const DagModel read(file, &memory);
       const std::uint64_t decoded = is_compact ? read.view().bytes() : 0;
       EXPECT_GE(memory.used(), file_bytes + decoded);
       EXPECT_LT(memory.used(), 2 * file_bytes + decoded);
     }
     EXPECT_EQ(memory.used(), file_bytes);
-    { const DagModel read(std::move(file), nullptr, &memory); }
+    { const DagModel read(std::move(file), &memory); }
     EXPECT_EQ(memory.used(), 0u);
   }
 }
@@ -84,9 +84,9 @@ TEST(DagModel, ADamagedFileIsNamedThoughItIsLargerThanTheLimit) {
   const TempDir dir;
   colored_model(dir).save(dir / "a.vdag", false);
   MemoryBudget little(1000);
-  EXPECT_THROW(DagModel(dir / "a.vdag", nullptr, &little), OverMemory);
+  EXPECT_THROW(DagModel(dir / "a.vdag", &little), OverMemory);
   write_text(dir / "a.vdag", read_text(dir / "a.vdag").substr(0, 2000));
-  EXPECT_NE(error_of([&] { DagModel(dir / "a.vdag", nullptr, &little); }).find("truncated"),
+  EXPECT_NE(error_of([&] { DagModel(dir / "a.vdag", &little); }).find("truncated"),
             std::string::npos);
   EXPECT_EQ(little.used(), 0u);
 }
@@ -94,10 +94,10 @@ TEST(DagModel, ADamagedFileIsNamedThoughItIsLargerThanTheLimit) {
 TEST(SceneModel, AnEsvoOrADagIsOpened) {
   const TempDir dir;
   colored_model(dir).save(dir / "a.vdag", false);
-  SceneModel scene(dir / "a.vdag", nullptr);
+  SceneModel scene(dir / "a.vdag");
   EXPECT_NE(scene.voxels().dag(), nullptr);
   EXPECT_FALSE(scene.colored_dag().attributes.is_empty());
-  EXPECT_EQ(error_of([&] { scene.show_materials("a.vdag", nullptr); }),
+  EXPECT_EQ(error_of([&] { scene.show_materials("a.vdag"); }),
             "a.vdag: has no material ids: voxdag build --material-ids stores them");
 }
 

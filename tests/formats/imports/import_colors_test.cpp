@@ -63,8 +63,7 @@ ImportResult import_listed(const std::vector<ColoredVoxel>& voxels, int levels,
   options.levels = levels;
   options.color_bound = 0;
   options.folder = dir.path();
-  options.memory = memory;
-  return import_voxels(ListedVoxels(voxels), options);
+  return import_voxels(ListedVoxels(voxels), options, memory);
 }
 
 using LinearSum = std::array<double, 4>;  ///< Red, green and blue in linear light; the number.

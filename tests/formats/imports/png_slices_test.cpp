@@ -1,10 +1,9 @@
 // Folders of PNG files against pixels compared one by one.
-#include "voxdag/formats/imports/volumes/png_slices.hpp"
-
 #include <png.h>
 
 #include "random_volume.hpp"
 #include "support/brute_svdag.hpp"
+#include "voxdag/formats/imports/volumes/volume_sources.hpp"
 
 namespace voxdag {
 namespace {

@@ -82,7 +82,7 @@ TEST_F(AssimpReader, KnowsEverySafeFormat) {
 TEST_F(AssimpReader, CountsAFactorOfTheFileForAssimp) {
   MemoryBudget memory(std::uint64_t{1} << 20);
   ReadOptions options;
-  options.memory = &memory;
+  options.work = &memory;
   EXPECT_EQ(read_mesh(dir_ / "a.dxf", options).triangles.size(), 1u);
   std::string large = kDxf;
   large.insert(large.size() - 6, std::string(20000, '\n'));

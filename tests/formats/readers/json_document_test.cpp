@@ -154,14 +154,14 @@ TEST(JsonDocument, MemoryIsCounted) {
   text += "1]";
   MemoryBudget enough(std::uint64_t{64} << 20);
   MeshSource source = source_of(text);
-  source.options.memory = &enough;
+  source.options.work = &enough;
   {
     const JsonDocument document(source, text);
     EXPECT_GE(enough.used(), 100'001 * sizeof(JsonNode));
   }
   EXPECT_EQ(enough.used(), 0u);
   MemoryBudget small(std::uint64_t{1} << 20);
-  source.options.memory = &small;
+  source.options.work = &small;
   EXPECT_THROW(JsonDocument(source, text), OverMemory);
   EXPECT_EQ(small.used(), 0u);
 }

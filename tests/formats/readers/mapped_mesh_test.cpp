@@ -199,8 +199,8 @@ TEST_P(MappedMesh, IsReadWithinABudgetThatIsTooSmallForTheMeshInMemory) {
   const std::uint64_t limit = std::uint64_t{2} << 20;
   tbb::task_arena(2).execute([&] {  // Each thread needs scratch memory.
     MemoryBudget budget(limit), too_small(limit);
-    EXPECT_THROW(read_mesh(file, {.memory = &too_small}), OverMemory);
-    const Mesh mesh = read_mesh(file, {.memory = &budget, .arrays = &arrays_});
+    EXPECT_THROW(read_mesh(file, {.work = &too_small}), OverMemory);
+    const Mesh mesh = read_mesh(file, {.work = &budget, .arrays = &arrays_});
     EXPECT_GT(arrays_.bytes(), limit);
     EXPECT_EQ(budget.used(), memory_bytes(mesh));
     EXPECT_LT(budget.used(), 1000u);

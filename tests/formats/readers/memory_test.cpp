@@ -189,7 +189,7 @@ class ReaderBudget : public testing::Test {
   std::optional<std::uint64_t> read(const std::filesystem::path& file, std::uint64_t limit,
                                     bool with_appearance) {
     MemoryBudget budget(limit);
-    const ReadOptions options{.memory = &budget};
+    const ReadOptions options{.work = &budget};
     const std::size_t before = live;
     peak = before;
     const auto check = [&](std::uint64_t counted) {

@@ -99,9 +99,9 @@ TEST_F(ReadMesh, WhatIsNoMeshIsRefused) {
 TEST_F(ReadMesh, CancellingStopsIt) {
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(read_mesh(write("a.obj", kObj), &progress), Cancelled);
-  EXPECT_THROW(read_mesh(write("a.ply", kPly), &progress), Cancelled);
-  EXPECT_THROW(read_mesh(write("a.stl", kStl), &progress), Cancelled);
+  EXPECT_THROW(read_mesh(write("a.obj", kObj), {&progress}), Cancelled);
+  EXPECT_THROW(read_mesh(write("a.ply", kPly), {&progress}), Cancelled);
+  EXPECT_THROW(read_mesh(write("a.stl", kStl), {&progress}), Cancelled);
 }
 
 TEST_F(ReadMesh, TheNumberOfThreadsChangesNothing) {

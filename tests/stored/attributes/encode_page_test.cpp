@@ -12,7 +12,7 @@
 
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/stored/attributes/fit_block.hpp"
-#include "voxdag/stored/attributes/validate_value_pages.hpp"
+#include "voxdag/stored/attributes/validate_pages.hpp"
 #include "voxdag/stored/attributes/value_encoder.hpp"
 
 namespace voxdag {

@@ -7,7 +7,7 @@
 #include "support/damaged_pages.hpp"
 #include "support/error_of.hpp"
 #include "voxdag/stored/attributes/encode_material_ids.hpp"
-#include "voxdag/stored/attributes/validate_material_ids.hpp"
+#include "voxdag/stored/attributes/validate_pages.hpp"
 
 namespace voxdag {
 namespace {

@@ -5,7 +5,7 @@
 #include "support/damaged_pages.hpp"
 #include "support/error_of.hpp"
 #include "voxdag/stored/attributes/page_reader.hpp"
-#include "voxdag/stored/attributes/validate_value_pages.hpp"
+#include "voxdag/stored/attributes/validate_pages.hpp"
 
 namespace voxdag {
 namespace {

@@ -192,10 +192,10 @@ TEST(CompactSvdag, StreamsOfMoreThanFourGigabytesAreRead) {
 TEST(CompactSvdag, AMemoryLimitIsKeptOrRefused) {
   const Svdag dag = brute_svdag(8, repeated_plane(8));
   MemoryBudget small(std::uint64_t{1} << 16);
-  EXPECT_THROW(encode_svdag(dag.view(), {.memory = &small}), OverMemory);
+  EXPECT_THROW(encode_svdag(dag.view(), {}, &small), OverMemory);
   EXPECT_EQ(small.used(), 0u);
   MemoryBudget large(std::uint64_t{1} << 30);
-  const CompactSvdag compact = encode_svdag(dag.view(), {.memory = &large});
+  const CompactSvdag compact = encode_svdag(dag.view(), {}, &large);
   EXPECT_EQ(large.used(), 0u);
   MemoryBudget tiny(1000);
   EXPECT_THROW(decode_svdag(compact.view(), &tiny), OverMemory);
@@ -208,7 +208,7 @@ TEST(CompactSvdag, CanBeCancelled) {
   Progress progress;
   progress.cancel();
   EXPECT_THROW(encode_svdag(dag.view(), {}, &progress), Cancelled);
-  EXPECT_THROW(decode_svdag(compact.view(), nullptr, &progress), Cancelled);
+  EXPECT_THROW(decode_svdag(compact.view(), &progress), Cancelled);
 }
 
 }  // namespace

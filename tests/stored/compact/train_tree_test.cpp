@@ -24,7 +24,7 @@ std::vector<ContextSample> samples(std::uint64_t seed, std::size_t count) {
 
 TEST(TrainTree, FindsTheFeaturesThatMatterAndNoOthers) {
   std::vector<ContextSample> of = samples(1, 5000);
-  const ContextTree tree = train_tree(of, {}, nullptr);
+  const ContextTree tree = train_tree(of, {}, {});
   ASSERT_EQ(tree.tables(), 3u);
   EXPECT_EQ(tree.nodes[0] & 63u, 3u);
   EXPECT_EQ(tree.table(0), tree.table(std::uint64_t{1} << 40));
@@ -34,19 +34,19 @@ TEST(TrainTree, FindsTheFeaturesThatMatterAndNoOthers) {
 TEST(TrainTree, DoesNotDependOnTheOrderOfTheSamples) {
   std::vector<ContextSample> of = samples(2, 3000), shuffled = of;
   std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937_64(7));
-  EXPECT_EQ(train_tree(of, {}, nullptr).nodes, train_tree(shuffled, {}, nullptr).nodes);
+  EXPECT_EQ(train_tree(of, {}, {}).nodes, train_tree(shuffled, {}, {}).nodes);
 }
 
 TEST(TrainTree, KeepsToTheLimits) {
   std::vector<ContextSample> of = samples(3, 3000);
-  EXPECT_EQ(train_tree(of, {64, 2, 1}, nullptr).tables(), 2u);
-  EXPECT_EQ(train_tree(of, {40, 100, 1}, nullptr).tables(), 2u);  // feature 40 is not used
-  EXPECT_EQ(train_tree({}, {}, nullptr).tables(), 1u);
+  EXPECT_EQ(train_tree(of, {64, 2, 1}, {}).tables(), 2u);
+  EXPECT_EQ(train_tree(of, {40, 100, 1}, {}).tables(), 2u);  // feature 40 is not used
+  EXPECT_EQ(train_tree({}, {}, {}).tables(), 1u);
 }
 
 TEST(TrainTree, SplitsNothingIfTheModelWouldCostMore) {
   std::vector<ContextSample> of = samples(4, 40);
-  EXPECT_EQ(train_tree(of, {}, nullptr).tables(), 1u);
+  EXPECT_EQ(train_tree(of, {}, {}).tables(), 1u);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "support/error_of.hpp"
 #include "voxdag/stored/attributes/encode_material_ids.hpp"
-#include "voxdag/stored/attributes/validate_value_pages.hpp"
+#include "voxdag/stored/attributes/validate_pages.hpp"
 
 namespace voxdag::wire {
 namespace {

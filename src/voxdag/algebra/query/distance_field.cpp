@@ -7,12 +7,12 @@
 
 namespace voxdag {
 
-std::vector<float> distance_field(const SvdagView& dag, const Box3i& box, Progress* progress) {
+std::vector<float> distance_field(const SvdagView& dag, const Box3i& box, Work work) {
   const Vec3i size = box.hi - box.lo;
   const auto row = static_cast<std::size_t>(size.x);
   const std::size_t rows = static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
   std::vector<float> distances(row * rows);
-  polled_for(rows, 1, progress, "distances", [&](std::size_t i) {
+  polled_for(rows, 1, work, "distances", [&](std::size_t i) {
     const auto y = box.lo.y + static_cast<std::int32_t>(i % static_cast<std::size_t>(size.y));
     const auto z = box.lo.z + static_cast<std::int32_t>(i / static_cast<std::size_t>(size.y));
     double most = HUGE_VAL;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "voxdag/core/box.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
@@ -11,7 +11,7 @@ namespace voxdag {
 /// Sets distances[x - box.lo.x + nx (y - box.lo.y + ny (z - box.lo.z))] to the distance, in voxels,
 /// from the centre of place (x, y, z) to the nearest voxel of the DAG, also outside of the box: to
 /// its closed cube, 0 in a voxel, +infinity if the DAG is empty. `box` is not empty and may reach
-/// out of the grid. Throws Cancelled; `progress` may be null.
-std::vector<float> distance_field(const SvdagView& dag, const Box3i& box, Progress* progress);
+/// out of the grid. Throws Cancelled.
+std::vector<float> distance_field(const SvdagView& dag, const Box3i& box, Work work);
 
 }  // namespace voxdag

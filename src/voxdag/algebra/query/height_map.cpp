@@ -8,13 +8,13 @@ namespace {
 
 class Heights {
  public:
-  Heights(const SvdagView& dag, int axis, HeightSide side, Progress* progress)
+  Heights(const SvdagView& dag, int axis, HeightSide side, Work work)
       : dag_(dag),
         axis_(axis),
         u_(axis == 0 ? 1 : 0),
         v_(axis == 2 ? 1 : 2),
         is_high_(side == HeightSide::kHigh),
-        progress_(progress),
+        work_(work),
         heights_(std::size_t{1} << (2 * dag.levels), -1) {
     for (int level = 0; level <= dag.levels - 2; ++level)
       done_.emplace_back(std::size_t{1} << (2 * level), false);
@@ -29,7 +29,7 @@ class Heights {
   /// Visits a cell of `level`, which is the place of a cell among those of its level.
   void visit(int level, std::uint32_t at, Vec3i cell) {
     if (level == dag_.levels - 2) return visit_block(dag_.leaf_blocks[at], cell);
-    poll_seldom(progress_, polled_++);
+    work_.poll_seldom(polled_++);
     const std::uint32_t* const node = dag_.nodes + at;
     for (const int half : {is_high_ ? 1 : 0, is_high_ ? 0 : 1})
       for (int column = 0; column < 4; ++column) {
@@ -80,7 +80,7 @@ class Heights {
   const SvdagView& dag_;
   int axis_, u_, v_;
   bool is_high_;
-  Progress* progress_;
+  Work work_;
   std::uint64_t polled_ = 0;
   std::vector<std::int32_t> heights_;
   /// Whether all columns of a square have their heights, for each level.
@@ -89,9 +89,8 @@ class Heights {
 
 }  // namespace
 
-std::vector<std::int32_t> height_map(const SvdagView& dag, int axis, HeightSide side,
-                                     Progress* progress) {
-  return Heights(dag, axis, side, progress).run();
+std::vector<std::int32_t> height_map(const SvdagView& dag, int axis, HeightSide side, Work work) {
+  return Heights(dag, axis, side, work).run();
 }
 
 }  // namespace voxdag

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
@@ -14,8 +14,7 @@ enum class HeightSide { kHigh, kLow };
 /// Returns, for each column of voxels along `axis` (0, 1 or 2), the coordinate of the voxel nearest
 /// to that end of the axis; -1 if the column has no voxels. Column (u, v) is value u + N v, where u
 /// is the first of the other two axes in the order x, y, z, and v the second. Visits the nodes that
-/// can be seen. Throws Cancelled; `progress` may be null.
-std::vector<std::int32_t> height_map(const SvdagView& dag, int axis, HeightSide side,
-                                     Progress* progress);
+/// can be seen. Throws Cancelled.
+std::vector<std::int32_t> height_map(const SvdagView& dag, int axis, HeightSide side, Work work);
 
 }  // namespace voxdag

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "voxdag/core/vec_order.hpp"
+#include "voxdag/core/vec.hpp"
 #include "voxdag/stored/svdag/svdag_lookup.hpp"
 
 namespace voxdag {

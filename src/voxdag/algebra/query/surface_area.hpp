@@ -2,8 +2,7 @@
 /// The surface of a DAG's voxels.
 #include <cstdint>
 
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
@@ -19,8 +18,7 @@ struct VoxelSurface {
 };
 
 /// Time grows with the nodes, not with the voxels: two neighbours along an axis are a voxel of the
-/// DAG and one of the DAG moved by a voxel. Throws OverMemory and Cancelled; `memory` and
-/// `progress` may be null.
-VoxelSurface surface_of(const SvdagView& dag, MemoryBudget* memory, Progress* progress);
+/// DAG and one of the DAG moved by a voxel. Throws OverMemory and Cancelled.
+VoxelSurface surface_of(const SvdagView& dag, Work work);
 
 }  // namespace voxdag

@@ -4,16 +4,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "voxdag/algebra/unique_items.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/stored/svdag/unique_cells.hpp"
 
 namespace voxdag {
 
 /// Joins voxels to a DAG node by node. It holds the DAG and the unfinished nodes of one path.
 class MortonBuilder {
  public:
-  /// A grid of 2^levels voxels a side. `memory` may be null.
+  /// A grid of 2^levels voxels a side.
   MortonBuilder(int levels, MemoryBudget* memory);
 
   /// Adds the voxel of a Morton code. Codes do not descend. Throws Error if the DAG outgrows 32-bit

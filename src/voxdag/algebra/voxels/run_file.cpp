@@ -32,13 +32,13 @@ Descriptor make_file(const std::filesystem::path& folder) {
 RunFile::RunFile(std::filesystem::path folder)
     : folder_(std::move(folder)), file_(make_file(folder_)) {}
 
-void RunFile::write(const void* bytes, std::size_t count, const Progress* progress) {
+void RunFile::write(const void* bytes, std::size_t count, Work work) {
   const auto* at = static_cast<const char*>(bytes);
   while (count > 0) {
     const ssize_t put = ::write(file_.get(), at, std::min<std::size_t>(count, 1 << 24));
     if (put < 0 && errno == EINTR) continue;
     if (put <= 0) fail(folder_, "write");
-    poll(progress);
+    work.poll();
     at += put;
     count -= static_cast<std::size_t>(put);
   }

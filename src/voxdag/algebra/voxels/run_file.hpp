@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "voxdag/core/io/descriptor.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -14,8 +14,8 @@ class RunFile {
   /// Creates a file in `folder`. Throws Error.
   explicit RunFile(std::filesystem::path folder);
 
-  /// Appends bytes. Throws Error and Cancelled; `progress` may be null.
-  void write(const void* bytes, std::size_t count, const Progress* progress);
+  /// Appends bytes. Throws Error and Cancelled.
+  void write(const void* bytes, std::size_t count, Work work);
   /// Reads bytes that were written, from byte `offset` on. Throws Error.
   void read(void* bytes, std::size_t count, std::uint64_t offset) const;
 

@@ -26,16 +26,13 @@ class SortedRecords {
 
  public:
   /// Holds `capacity` records (at least 1024 are held) and sorts them in the same memory. The file
-  /// of the other records lies in `folder`; there is none as long as all records fit. `memory`,
-  /// which may be null, counts the records and the buffers that the file is read through. Throws
-  /// OverMemory.
-  SortedRecords(std::size_t capacity, std::filesystem::path folder, MemoryBudget* memory,
-                Progress* progress)
+  /// of the other records lies in `folder`; there is none as long as all records fit. `work` counts
+  /// the records and the buffers that the file is read through. Throws OverMemory.
+  SortedRecords(std::size_t capacity, std::filesystem::path folder, Work work)
       : capacity_(std::max(capacity, kMinCapacity)),
         folder_(std::move(folder)),
-        memory_(memory),
-        progress_(progress),
-        records_(memory) {}
+        work_(work),
+        records_(work.memory) {}
 
   /// Adds a record. Throws Error if a file cannot be written, OverMemory and Cancelled.
   void add(const Record& record) {
@@ -62,7 +59,7 @@ class SortedRecords {
 
   void sort_in_memory() {
     if (is_sorted_) return;
-    polled_sort(records_.begin(), records_.end(), progress_);
+    polled_sort(records_.begin(), records_.end(), work_);
     if constexpr (kRepeats == Repeats::kDropped)
       records_.resize(static_cast<std::size_t>(std::unique(records_.begin(), records_.end()) -
                                                records_.begin()));
@@ -79,15 +76,14 @@ class SortedRecords {
     if (!file_) file_.emplace(folder_);
     const std::uint64_t begin =
         runs_.empty() ? 0 : runs_.back().begin + runs_.back().records * sizeof(Record);
-    file_->write(records_.data(), records_.size() * sizeof(Record), progress_);
+    file_->write(records_.data(), records_.size() * sizeof(Record), work_);
     runs_.push_back({begin, records_.size()});
     records_.clear();
   }
 
   std::size_t capacity_;
   std::filesystem::path folder_;
-  MemoryBudget* memory_;
-  Progress* progress_;
+  Work work_;
   PageVector<Record> records_;
   bool is_sorted_ = true;
   std::optional<RunFile> file_;
@@ -132,7 +128,7 @@ void SortedRecords<Record, kRepeats>::visit_all(const Visit& visit) {
   sort_in_memory();
   if (runs_.empty()) {
     for (std::size_t i = 0; i < records_.size(); ++i) {
-      poll_seldom(progress_, i);
+      work_.poll_seldom(i);
       visit(records_[i]);
     }
     return;
@@ -143,7 +139,7 @@ void SortedRecords<Record, kRepeats>::visit_all(const Visit& visit) {
   constexpr std::size_t kLeast = 4096 / sizeof(Record),
                         kMost = (std::size_t{1} << 18) / sizeof(Record);
   const std::size_t buffer = std::clamp(capacity_ / runs_.size(), kLeast, kMost);
-  const MemoryReservation buffers(memory_, runs_.size() * buffer * sizeof(Record));
+  const MemoryReservation buffers(work_.memory, runs_.size() * buffer * sizeof(Record));
   std::vector<RunReader> readers;
   readers.reserve(runs_.size());
   for (const Run& run : runs_) readers.emplace_back(*file_, run, buffer);
@@ -161,7 +157,7 @@ void SortedRecords<Record, kRepeats>::visit_all(const Visit& visit) {
     // Runs hardly overlap if the data came in some order: stay with a run while its record is the
     // least.
     do {
-      poll_seldom(progress_, polled++);
+      work_.poll_seldom(polled++);
       const Record& record = reader.record();
       if (kRepeats == Repeats::kKept || is_first || !(record == last)) visit(record);
       is_first = false;

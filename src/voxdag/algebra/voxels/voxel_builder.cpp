@@ -15,8 +15,8 @@ void throw_outside_of_grid(Vec3i voxel, int levels) {
 }
 
 VoxelBuilder::VoxelBuilder(int levels, std::size_t most_voxels, const std::filesystem::path& folder,
-                           MemoryBudget* memory, Progress* progress)
-    : levels_(levels), memory_(memory), codes_(most_voxels, folder, memory, progress) {}
+                           Work work)
+    : levels_(levels), memory_(work.memory), codes_(most_voxels, folder, work) {}
 
 Svdag VoxelBuilder::finish() {
   MortonBuilder builder(levels_, memory_);

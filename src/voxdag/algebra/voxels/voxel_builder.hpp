@@ -5,6 +5,7 @@
 
 #include "voxdag/algebra/voxels/sorted_records.hpp"
 #include "voxdag/core/morton.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
@@ -26,10 +27,10 @@ inline std::uint64_t code_in_grid(Vec3i voxel, int levels) {
 /// do not fit are sorted in a file, and the DAG is built from the sorted ones node by node.
 class VoxelBuilder {
  public:
-  /// A grid of 2^levels voxels a side. Holds up to `most_voxels` in memory, 8 bytes each; the
-  /// file of the others lies in `folder`. `memory` and `progress` may be null. Throws OverMemory.
+  /// A grid of 2^levels voxels a side. Holds up to `most_voxels` in memory, 8 bytes each; the file
+  /// of the others lies in `folder`. Throws OverMemory.
   VoxelBuilder(int levels, std::size_t most_voxels, const std::filesystem::path& folder,
-               MemoryBudget* memory = nullptr, Progress* progress = nullptr);
+               Work work = {});
 
   /// Adds a voxel. Throws Error if it lies outside of the grid, or if a file cannot be written;
   /// Cancelled.
@@ -48,7 +49,7 @@ class VoxelBuilder {
 };
 
 /// Returns the minimal DAG, in canonical order, of voxels whose Morton codes ascend. Throws Error
-/// if it outgrows 32-bit pointers, and OverMemory; `memory` may be null.
+/// if it outgrows 32-bit pointers, and OverMemory.
 Svdag svdag_of_sorted(int levels, std::span<const std::uint64_t> codes, MemoryBudget* memory);
 
 }  // namespace voxdag

@@ -15,13 +15,13 @@ namespace {
 /// Compresses the values of cells as soon as they come.
 class AttributeEncoder : public CellValueSink {
  public:
-  AttributeEncoder(std::uint64_t cells, const AttributeOptions& options) {
+  AttributeEncoder(std::uint64_t cells, const AttributeOptions& options, MemoryBudget* memory) {
     if (options.colors)
       colors = std::make_unique<ValueEncoder>(
-          cells, make_value_metric(kColorWeights, 255 * options.color_bound), options.memory);
+          cells, make_value_metric(kColorWeights, 255 * options.color_bound), memory);
     if (options.normals)
       normals = std::make_unique<ValueEncoder>(
-          cells, make_normal_metric(options.normal_bound_degrees), options.memory);
+          cells, make_normal_metric(options.normal_bound_degrees), memory);
   }
 
   bool needs_normals() const override { return normals != nullptr; }
@@ -59,17 +59,16 @@ class AttributeEncoder : public CellValueSink {
 
 DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
                                const SurfaceShading* shading, const AttributeOptions& options,
-                               Progress* progress) {
+                               Work work) {
   DagAttributes result;
-  result.index = build_cell_index(dag, options.finest_level, options.memory);
-  const MemoryReservation index_bytes(options.memory, result.index.view().bytes());
+  result.index = build_cell_index(dag, options.finest_level, work.memory);
+  const MemoryReservation index_bytes(work.memory, result.index.view().bytes());
   if (options.materials)
-    result.materials =
-        filter_materials(mesh, grid, dag, result.index.view(), options.memory, progress);
-  const MemoryReservation material_bytes(options.memory, result.materials.view().bytes());
+    result.materials = filter_materials(mesh, grid, dag, result.index.view(), work);
+  const MemoryReservation material_bytes(work.memory, result.materials.view().bytes());
   if (!options.colors && !options.normals) return result;
-  AttributeEncoder encoder(result.index.cells, options);
-  filter_cells(mesh, grid, dag, result.index.view(), shading, encoder, options.memory, progress);
+  AttributeEncoder encoder(result.index.cells, options, work.memory);
+  filter_cells(mesh, grid, dag, result.index.view(), shading, encoder, work);
   const auto finish = [](std::unique_ptr<ValueEncoder>& values, ValuePages& pages,
                          ValueErrors& errors) {
     if (!values) return;
@@ -78,7 +77,7 @@ DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagVi
     values.reset();
   };
   finish(encoder.colors, result.colors, result.color_errors);
-  const MemoryReservation color_bytes(options.memory, result.colors.view().bytes());
+  const MemoryReservation color_bytes(work.memory, result.colors.view().bytes());
   finish(encoder.normals, result.normals, result.normal_errors);
   return result;
 }

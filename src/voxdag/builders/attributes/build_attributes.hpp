@@ -2,6 +2,7 @@
 /// Builds the attributes of a DAG: numbers of its cells, filtered and compressed colours and
 /// normals, and materials.
 #include "voxdag/builders/attributes/filter_cells.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/attributes/dag_attributes.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 
@@ -15,7 +16,6 @@ struct AttributeOptions {
   double color_bound = 0.05;
   /// The largest angle between a stored and a filtered normal, kMinNormalBound to 180 degrees.
   double normal_bound_degrees = 5;
-  MemoryBudget* memory = nullptr;  ///< Counts the builder's memory. Null: no limit.
 };
 
 /// Builds the attributes of `dag`, the DAG of `mesh` in `grid`. `shading` is the shading of the
@@ -25,7 +25,7 @@ struct AttributeOptions {
 /// OverMemory and Cancelled.
 DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
                                const SurfaceShading* shading, const AttributeOptions& options,
-                               Progress* progress = nullptr);
+                               Work work = {});
 
 /// Returns the number of cells of levels 0 to `level`, 0 to L, of a DAG with these counts.
 std::uint64_t count_cells(const SvdagCounts& counts, int level);

@@ -3,15 +3,15 @@
 #include <vector>
 
 #include "voxdag/builders/attributes/cell_task.hpp"
-#include "voxdag/builders/pieces/sum_pieces.hpp"
+#include "voxdag/builders/pieces/surface_sum.hpp"
 
 namespace voxdag {
 
 /// Filters tasks, one at a time. Each thread has its own.
 class CellFilter {
  public:
-  /// Refers to the arguments. Counts the pieces of triangles in `memory`; null: no limit. Without
-  /// `with_normals`, the normals of the values are meaningless unit vectors.
+  /// Refers to the arguments. Counts the pieces of triangles in `memory`. Without `with_normals`,
+  /// the normals of the values are meaningless unit vectors.
   CellFilter(const SvdagView& dag, const CellIndexView& index, const TriangleSource& source,
              const SurfaceShading* shading, bool with_normals, MemoryBudget* memory);
 

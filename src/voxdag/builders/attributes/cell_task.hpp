@@ -22,7 +22,7 @@ class TaskPieces {
   /// The largest number of triangles that are cut into pieces at a time.
   static constexpr std::size_t kMaxLoaded = 1 << 14;
 
-  /// Refers to the arguments. Counts the pieces in `memory`; null: no limit.
+  /// Refers to the arguments. Counts the pieces in `memory`.
   TaskPieces(const SvdagView& dag, const CellIndexView& index, const TriangleSource& source,
              const PieceSampler& sampler, MemoryBudget* memory)
       : dag_(dag), index_(index), source_(source), sampler_(sampler), pieces_(memory) {}

@@ -127,12 +127,12 @@ void add(ValueCheck& check, double error, const VisitedCell& cell) {
 class SampleWalk {
  public:
   SampleWalk(const ColoredDagView& colored, const TriangleSource& source,
-             tbb::enumerable_thread_specific<CellComparer>& comparers, Progress* progress)
+             tbb::enumerable_thread_specific<CellComparer>& comparers, Work work)
       : dag_(colored.dag),
         index_(colored.attributes.index),
         source_(source),
         comparers_(comparers),
-        progress_(progress) {}
+        work_(work) {}
 
   void compare(std::span<const std::uint64_t> numbers, AttributeCheck& check) {
     std::vector<VisitedCell> cells(1);
@@ -141,7 +141,7 @@ class SampleWalk {
     while (!cells.empty()) {
       std::vector<std::vector<VisitedCell>> below(cells.size());
       std::vector<CellErrors> errors(cells.size());
-      polled_for(cells.size(), 1, progress_, "attributes",
+      polled_for(cells.size(), 1, work_, "attributes",
                  [&](std::size_t i) { errors[i] = visit(cells[i], below[i]); });
       for (std::size_t i = 0; i < cells.size(); ++i) {
         add(check.colors, errors[i].color, cells[i]);
@@ -186,7 +186,7 @@ class SampleWalk {
   const CellIndexView& index_;
   const TriangleSource& source_;
   tbb::enumerable_thread_specific<CellComparer>& comparers_;
-  Progress* progress_;
+  Work work_;
 };
 
 /// Returns the next samples of `left`, in increasing order: from `first` on if all cells are
@@ -208,11 +208,11 @@ std::vector<std::uint64_t> next_samples(std::uint64_t cells, std::uint64_t left,
 
 AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const ColoredDagView& colored,
                                 const SurfaceShading& shading, std::uint64_t samples,
-                                std::uint64_t seed, Progress* progress) {
+                                std::uint64_t seed, Work work) {
   AttributeCheck check;
   if (colored.is_empty()) return check;
-  const QuantizedMesh quantized(mesh, grid, nullptr, progress);
-  const IndexSet duplicates = find_duplicate_surfaces(mesh, &shading.appearance(), progress),
+  const QuantizedMesh quantized(mesh, grid, work);
+  const IndexSet duplicates = find_duplicate_surfaces(mesh, &shading.appearance(), work),
                  no_duplicates;
   const std::vector<std::uint8_t> no_open_edges(quantized.triangle_count());
   // Materials count all triangles; CellComparer leaves the repeated ones out for colours.
@@ -220,7 +220,7 @@ AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const Colore
   const TriangleSource source{grid, quantized, no_open_edges, nullptr, duplicates};
   tbb::enumerable_thread_specific<CellComparer> comparers(
       [&] { return CellComparer(colored, source, all, mesh.triangle_materials, shading); });
-  SampleWalk walk(colored, all, comparers, progress);
+  SampleWalk walk(colored, all, comparers, work);
   const std::uint64_t cells = colored.attributes.index.cells;
   const bool is_all = samples >= cells;
   std::mt19937_64 random(seed);

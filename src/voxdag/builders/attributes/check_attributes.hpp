@@ -1,7 +1,7 @@
 #pragma once
 /// Compares stored attributes of a DAG's cells with the surface of the mesh.
 #include "voxdag/core/grid.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
 #include "voxdag/stored/attributes/stored_attributes.hpp"
@@ -37,7 +37,7 @@ struct AttributeCheck {
 /// Throws Cancelled.
 AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const ColoredDagView& colored,
                                 const SurfaceShading& shading, std::uint64_t samples,
-                                std::uint64_t seed, Progress* progress = nullptr);
+                                std::uint64_t seed, Work work = {});
 
 /// Tolerances for the errors of check_attributes(), to add to the bounds of the encoder.
 inline constexpr double kColorTolerance = 1.5 / 255, kNormalTolerance = 0.1,

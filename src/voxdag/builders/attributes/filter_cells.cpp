@@ -56,19 +56,19 @@ void finish_top_cells(const SvdagView& dag, const CellIndexView& index, Numbered
 
 void filter_cells(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
                   const CellIndexView& index, const SurfaceShading* shading, CellValueSink& sink,
-                  MemoryBudget* memory, Progress* progress) {
+                  Work work) {
   if (dag.is_empty()) return;
-  const QuantizedMesh quantized(mesh, grid, memory, progress);
-  const MemoryReservation tables(memory, quantized.triangle_count());
+  const QuantizedMesh quantized(mesh, grid, work);
+  const MemoryReservation tables(work.memory, quantized.triangle_count());
   const Appearance* const appearance = shading != nullptr ? &shading->appearance() : nullptr;
-  const IndexSet duplicates = find_duplicate_surfaces(mesh, appearance, progress, memory);
+  const IndexSet duplicates = find_duplicate_surfaces(mesh, appearance, work);
   const std::vector<std::uint8_t> no_open_edges(quantized.triangle_count());
   const TriangleSource source{grid, quantized, no_open_edges, nullptr, duplicates};
-  NumberedTopCells cells = list_top_cells(dag, index, source, memory, progress);
+  NumberedTopCells cells = list_top_cells(dag, index, source, work);
   tbb::enumerable_thread_specific<CellFilter> filters(
-      [&] { return CellFilter(dag, index, source, shading, sink.needs_normals(), memory); });
+      [&] { return CellFilter(dag, index, source, shading, sink.needs_normals(), work.memory); });
   filter_tasks(
-      dag, index, cells, CellFilter::kBytesPerCell, memory, "attributes", progress,
+      dag, index, cells, CellFilter::kBytesPerCell, work, "attributes",
       [&](const CellTask& task) {
         std::vector<VoxelValue> values;
         const SurfaceSum sum = filters.local().filter(task, values);

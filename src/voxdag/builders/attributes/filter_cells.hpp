@@ -11,8 +11,7 @@
 /// holds the upper cells and a few tasks, however many cells there are.
 #include "voxdag/builders/attributes/cell_value_sink.hpp"
 #include "voxdag/core/grid.hpp"
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
 #include "voxdag/stored/attributes/cell_index.hpp"
@@ -22,10 +21,9 @@ namespace voxdag {
 /// Filters all cells that `index` numbers and gives their values to the sink. `dag` is the DAG of
 /// the mesh in `grid`, and `index` numbers its cells. `shading` is the shading of the mesh; null:
 /// grey. The values depend on mesh, shading, grid and level alone, not on the number of threads.
-/// Counts its memory in `memory`; null: no limit. Throws OverMemory and Cancelled, and what the
-/// sink throws.
+/// Counts its memory in `work`. Throws OverMemory and Cancelled, and what the sink throws.
 void filter_cells(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
                   const CellIndexView& index, const SurfaceShading* shading, CellValueSink& sink,
-                  MemoryBudget* memory = nullptr, Progress* progress = nullptr);
+                  Work work = {});
 
 }  // namespace voxdag

@@ -40,20 +40,20 @@ void join_top_cells(const NumberedTopCells& cells, std::vector<TopMaterials>& of
 }  // namespace
 
 MaterialIds filter_materials(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
-                             const CellIndexView& index, MemoryBudget* memory, Progress* progress) {
+                             const CellIndexView& index, Work work) {
   if (dag.is_empty()) return {};
-  const QuantizedMesh quantized(mesh, grid, memory, progress);
-  const MemoryReservation tables(memory, quantized.triangle_count());
+  const QuantizedMesh quantized(mesh, grid, work);
+  const MemoryReservation tables(work.memory, quantized.triangle_count());
   const IndexSet no_duplicates;
   const std::vector<std::uint8_t> no_open_edges(quantized.triangle_count());
   const TriangleSource source{grid, quantized, no_open_edges, nullptr, no_duplicates};
-  NumberedTopCells cells = list_top_cells(dag, index, source, memory, progress);
+  NumberedTopCells cells = list_top_cells(dag, index, source, work);
   std::vector<TopMaterials> of(cells.size());
-  CountedVector<CellRun> runs(memory);
+  CountedVector<CellRun> runs(work.memory);
   tbb::enumerable_thread_specific<MaterialFilter> filters(
-      [&] { return MaterialFilter(dag, index, source, mesh.triangle_materials, memory); });
+      [&] { return MaterialFilter(dag, index, source, mesh.triangle_materials, work.memory); });
   filter_tasks(
-      dag, index, cells, MaterialFilter::kBytesPerCell, memory, "materials", progress,
+      dag, index, cells, MaterialFilter::kBytesPerCell, work, "materials",
       [&](const CellTask& task) {
         TaskResult result;
         result.areas = filters.local().filter(task, result.runs);
@@ -73,7 +73,7 @@ MaterialIds filter_materials(const Mesh& mesh, const Grid& grid, const SvdagView
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return cells[a].cell.number < cells[b].cell.number;
   });
-  MaterialEncoder encoder(static_cast<std::uint32_t>(mesh.materials.size()), memory);
+  MaterialEncoder encoder(static_cast<std::uint32_t>(mesh.materials.size()), work.memory);
   for (const std::size_t i : order) {
     if (!cells[i].is_task) encoder.add(of[i].id, 1);
     for (std::size_t run = of[i].first_run; run < of[i].end_run; ++run)

@@ -1,8 +1,7 @@
 #pragma once
 /// Finds the materials of all cells of a DAG: each has the material with the largest area in it.
 #include "voxdag/core/grid.hpp"
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/stored/attributes/cell_index.hpp"
 #include "voxdag/stored/attributes/material_ids.hpp"
@@ -10,12 +9,11 @@
 namespace voxdag {
 
 /// Returns the materials of the cells that `index` numbers. `dag` is the DAG of the mesh in `grid`;
-/// the mesh has at most kMaxMaterials materials, and one for each triangle. If areas are
-/// equal, the smallest id counts. Transparency is ignored, as in the shape. The
-/// ids depend on mesh, grid and level alone, not on the number of threads. Counts its memory in
-/// `memory` until it returns; null: no limit. Throws OverMemory and Cancelled.
+/// the mesh has at most kMaxMaterials materials, and one for each triangle. If areas are equal, the
+/// smallest id counts. Transparency is ignored, as in the shape. The ids depend on mesh, grid and
+/// level alone, not on the number of threads. Counts its memory in `work` until it returns. Throws
+/// OverMemory and Cancelled.
 MaterialIds filter_materials(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
-                             const CellIndexView& index, MemoryBudget* memory = nullptr,
-                             Progress* progress = nullptr);
+                             const CellIndexView& index, Work work = {});
 
 }  // namespace voxdag

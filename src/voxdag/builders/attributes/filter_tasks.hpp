@@ -12,35 +12,33 @@ namespace voxdag {
 /// Calls filter(task) for the tasks among `cells` on many threads, and use(i, result) with each
 /// result, in the order of the tasks' numbers; cells[i] is the task. Frees the triangles of a task
 /// after filter(). A task starts when `bytes_per_cell` for each cell of its subtree, and the pieces
-/// of its triangles, are expected to fit into `memory`; null: no limit. Reports the filtered cells
-/// as `step`. Throws OverMemory and Cancelled.
+/// of its triangles, are expected to fit into the budget. Reports the filtered cells as `step`.
+/// Throws OverMemory and Cancelled.
 template <class Filter, class Use>
 void filter_tasks(const SvdagView& dag, const CellIndexView& index, NumberedTopCells& cells,
-                  std::uint64_t bytes_per_cell, MemoryBudget* memory, const char* step,
-                  Progress* progress, const Filter& filter, const Use& use) {
+                  std::uint64_t bytes_per_cell, Work work, const char* step, const Filter& filter,
+                  const Use& use) {
   const std::vector<std::size_t> tasks = tasks_in_order(cells);
-  MemoryGate gate(memory);
+  MemoryGate gate(work.memory);
   std::size_t next = 0;
   std::uint64_t done = 0;
   ordered_pipeline(
-      tasks.size(), 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()), progress,
+      tasks.size(), 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()), work,
       [&](std::size_t i) {
         NumberedTopCell& task = cells[tasks[i]];
         const std::uint64_t bytes = cells_in(dag, index, task.cell) * bytes_per_cell;
         const MemoryGate::Pass pass(gate,
                                     bytes + TaskPieces::expected_bytes(task.triangles.size()));
-        const MemoryReservation counted(memory, bytes);
+        const MemoryReservation counted(work.memory, bytes);
         auto result = filter(CellTask{task.cell, task.place, task.triangles});
-        task.triangles = TriangleList(memory);
+        task.triangles = TriangleList(work.memory);
         return result;
       },
       [&](auto& result) {
         const std::size_t task = tasks[next++];
         use(task, result);
         done += cells_in(dag, index, cells[task].cell);
-        if (progress != nullptr)
-          progress->report(step, static_cast<double>(done) / static_cast<double>(index.cells),
-                           done);
+        work.report_done(step, done, index.cells);
       });
 }
 

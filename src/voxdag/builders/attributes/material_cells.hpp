@@ -36,8 +36,8 @@ struct CellRun {
 /// Filters tasks, one at a time. Each thread has its own. Ignores transparency, as the shape does.
 class MaterialFilter {
  public:
-  /// Refers to the arguments. `materials` has the material of each triangle of the mesh. Counts
-  /// the pieces of triangles and their areas in `memory`; null: no limit.
+  /// Refers to the arguments. `materials` has the material of each triangle of the mesh. Counts the
+  /// pieces of triangles and their areas in `memory`.
   MaterialFilter(const SvdagView& dag, const CellIndexView& index, const TriangleSource& source,
                  std::span<const std::uint32_t> materials, MemoryBudget* memory);
 

@@ -18,25 +18,24 @@ constexpr std::size_t kTaskTriangles = TaskPieces::kMaxLoaded;
 }  // namespace
 
 NumberedTopCells list_top_cells(const SvdagView& dag, const CellIndexView& index,
-                                const TriangleSource& source, MemoryBudget* memory,
-                                Progress* progress) {
-  NumberedTopCells cells(memory);
+                                const TriangleSource& source, Work work) {
+  NumberedTopCells cells(work.memory);
   cells.resize(1);
-  cells[0].triangles = triangles_of_grid(source, memory);
+  cells[0].triangles = triangles_of_grid(source, work.memory);
   for (std::size_t begin = 0; begin < cells.size();) {
     const std::size_t end = cells.size();
-    std::vector<ChildTriangles> lists(end - begin, empty_children(memory));
+    std::vector<ChildTriangles> lists(end - begin, empty_children(work.memory));
     parallel_for(end - begin, [&](std::size_t i) {
-      if (progress != nullptr && progress->cancelled()) return;
+      if (work.cancelled()) return;
       NumberedTopCell& top = cells[begin + i];
       top.is_task =
           top.cell.level == index.finest_level || top.cell.level >= dag.levels - 2 ||
           (cells_in(dag, index, top.cell) <= kTaskCells && top.triangles.size() <= kTaskTriangles);
       if (top.is_task) return;
-      lists[i] = split_triangles(source, top.cell.level, top.place, top.triangles, memory);
-      top.triangles = TriangleList(memory);
+      lists[i] = split_triangles(source, top.cell.level, top.place, top.triangles, work.memory);
+      top.triangles = TriangleList(work.memory);
     });
-    if (progress != nullptr) progress->throw_if_cancelled();
+    work.poll();
     for (std::size_t at = begin; at < end; ++at) {
       if (cells[at].is_task) continue;
       cells[at].first_child = cells.size();

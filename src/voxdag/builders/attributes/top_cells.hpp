@@ -7,7 +7,7 @@
 #include "voxdag/builders/pieces/child_triangles.hpp"
 #include "voxdag/builders/pieces/surface_sum.hpp"
 #include "voxdag/builders/pieces/triangle_source.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/attributes/numbered_cell.hpp"
 
 namespace voxdag {
@@ -24,11 +24,10 @@ struct NumberedTopCell {
 
 using NumberedTopCells = CountedVector<NumberedTopCell>;
 
-/// Lists the cells from the root down to the tasks, breadth first. Counts them in `memory`; null:
-/// no limit. The DAG must have voxels. Throws Cancelled and OverMemory.
+/// Lists the cells from the root down to the tasks, breadth first. Counts them in `work`. The DAG
+/// must have voxels. Throws Cancelled and OverMemory.
 NumberedTopCells list_top_cells(const SvdagView& dag, const CellIndexView& index,
-                                const TriangleSource& source, MemoryBudget* memory,
-                                Progress* progress);
+                                const TriangleSource& source, Work work);
 
 /// Returns the indices of the tasks in `cells`, in the order of their cells' numbers.
 std::vector<std::size_t> tasks_in_order(const NumberedTopCells& cells);

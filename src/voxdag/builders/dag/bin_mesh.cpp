@@ -9,10 +9,10 @@
 namespace voxdag {
 
 BinnedMesh bin_mesh(const BuildInput& input) {
-  QuantizedMesh mesh(input.mesh, input.grid, &input.budget, input.progress);
-  const IndexSet duplicates = find_duplicate_triangles(mesh, &input.budget, input.progress);
-  SubvolumeBins bins = bin_triangles(mesh, input.grid.levels, input.bin_level, {}, duplicates,
-                                     input.budget, input.progress);
+  QuantizedMesh mesh(input.mesh, input.grid, input.work);
+  const IndexSet duplicates = find_duplicate_triangles(mesh, input.work);
+  SubvolumeBins bins =
+      bin_triangles(mesh, input.grid.levels, input.bin_level, {}, duplicates, input.work);
   const double quantized = static_cast<double>(input.mesh.vertices.size()) * sizeof(Vec3i);
   const double table = static_cast<double>(mesh.triangle_count()) * 12;
   const double binning = static_cast<double>(bins.triangles.size()) * 16;

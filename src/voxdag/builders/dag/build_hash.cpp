@@ -13,6 +13,7 @@
 #include "voxdag/builders/dag/join_cells.hpp"
 #include "voxdag/builders/dag/stop_watch.hpp"
 #include "voxdag/builders/dag/subvolume.hpp"
+#include "voxdag/builders/voxelize/duplicate_triangles.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 
@@ -88,33 +89,32 @@ HashConsedNodes voxelize_hash_consed(const BuildInput& input, BuildReport& repor
   StopWatch watch;
   const BinnedMesh binned = bin_mesh(input);
   report.quantize_seconds = watch.lap();
-  return voxelize_binned(binned, input.grid.levels, input.budget, input.progress, report, bytes);
+  return voxelize_binned(binned, input.grid.levels, input.work, report, bytes);
 }
 
-HashConsedNodes voxelize_binned(const BinnedMesh& binned, int levels, MemoryBudget& budget,
-                                Progress* progress, BuildReport& report, StageBytes& bytes) {
+HashConsedNodes voxelize_binned(const BinnedMesh& binned, int levels, Work work,
+                                BuildReport& report, StageBytes& bytes) {
   StopWatch watch;
   const SubvolumeBins& bins = binned.bins;
   report.subvolumes = bins.cells.size();
   const std::size_t threads = thread_count(bins.cells.size());
-  const int log2_sets = log2_memo_sets(budget, threads);
+  const int log2_sets = log2_memo_sets(*work.memory, threads);
   bytes.prepare = binned.prepare_bytes;
   bytes.voxelize_fixed =
-      static_cast<double>(budget.used()) +
+      static_cast<double>(work.memory->used()) +
       static_cast<double>(threads) *
           (static_cast<double>(DagSink::bytes(log2_sets)) + list_scratch_bytes(bins));
 
   HashConsedNodes result;
   for (int level = 0; level <= levels - 2; ++level)
-    result.stores.push_back(std::make_unique<NodeStore>(budget));
+    result.stores.push_back(std::make_unique<NodeStore>(*work.memory));
   const int log2_size = levels - bins.level;
   using Context = SubvolumeContext<DagSink>;
   tbb::enumerable_thread_specific<Context> contexts([&] {
-    return Context(binned.mesh, levels, DagSink(result.stores, log2_sets, budget), budget,
-                   progress);
+    return Context(binned.mesh, levels, DagSink(result.stores, log2_sets, *work.memory), work);
   });
   std::vector<NodeId> ids(bins.cells.size(), kNoNode);
-  polled_for(bins.cells.size(), 1, progress, "voxelize", [&](std::size_t i) {
+  polled_for(bins.cells.size(), 1, work, "voxelize", [&](std::size_t i) {
     const Vec3i cell = morton_decode(bins.cells[i]);
     const SubvolumeJob job{
         {cell.x << log2_size, cell.y << log2_size, cell.z << log2_size}, log2_size, bins.list(i)};
@@ -131,17 +131,30 @@ HashConsedNodes voxelize_binned(const BinnedMesh& binned, int levels, MemoryBudg
   return result;
 }
 
-Svdag number_nodes(HashConsedNodes nodes, int levels, MemoryBudget& budget, Progress* progress,
-                   BuildReport& report) {
+Svdag number_nodes(HashConsedNodes nodes, int levels, Work work, BuildReport& report) {
   Svdag dag;
   dag.levels = levels;
   if (nodes.root == kNoNode) return dag;
   StopWatch watch;
   for (const auto& store : nodes.stores) store->release_slots();
-  StoreSource source(nodes.stores, budget);
-  dag = canonical_order(source, levels, nodes.root, &budget, progress);
+  StoreSource source(nodes.stores, *work.memory);
+  dag = canonical_order(source, levels, nodes.root, work);
   report.canonical_seconds = watch.lap();
   return dag;
+}
+
+Svdag build_range(CountedVector<QuantizedTriangle> triangles, int levels, const CellRange& range,
+                  Work work) {
+  MemoryBudget unlimited;
+  if (work.memory == nullptr) work.memory = &unlimited;
+  const int bin_level = std::max(hash_bin_level(levels, triangles.size()), range.level);
+  BuildReport report;
+  StageBytes bytes;
+  QuantizedMesh mesh(std::move(triangles));
+  const IndexSet duplicates = find_duplicate_triangles(mesh, work);
+  SubvolumeBins bins = bin_triangles(mesh, levels, bin_level, range, duplicates, work);
+  const BinnedMesh binned{std::move(mesh), std::move(bins), 0};
+  return number_nodes(voxelize_binned(binned, levels, work, report, bytes), levels, work, report);
 }
 
 }  // namespace voxdag

@@ -7,19 +7,21 @@
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/dag/sort_tree.hpp"
 #include "voxdag/builders/dag/subvolume_bins.hpp"
+#include "voxdag/builders/voxelize/cell_range.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/work.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 
-/// The input of a builder. Owns nothing; `progress` may be null.
+/// The input of a builder. Owns nothing.
 struct BuildInput {
   const Mesh& mesh;
   Grid grid;
   BuildMethod method;
   int bin_level;  ///< The sub-volumes are the cells of this level.
-  MemoryBudget& budget;
-  Progress* progress;
+  Work work;      ///< Has a budget, as every Work in this header.
 };
 
 /// Bytes that the stages of a build hold, without the mesh. Those marked * grow with the
@@ -62,13 +64,20 @@ int hash_bin_level(int levels, std::size_t triangles);
 HashConsedNodes voxelize_hash_consed(const BuildInput& input, BuildReport& report,
                                      StageBytes& bytes);
 /// Builds the unique nodes of the sub-volumes that `binned` lists, in a grid of 2^levels voxels a
-/// side. Adds to `report` and `bytes`. Throws OverMemory and Cancelled; `progress` may be null.
-HashConsedNodes voxelize_binned(const BinnedMesh& binned, int levels, MemoryBudget& budget,
-                                Progress* progress, BuildReport& report, StageBytes& bytes);
+/// side. Adds to `report` and `bytes`. Throws OverMemory and Cancelled.
+HashConsedNodes voxelize_binned(const BinnedMesh& binned, int levels, Work work,
+                                BuildReport& report, StageBytes& bytes);
 /// Converts the nodes to the canonical DAG of 2^levels voxels a side. Throws Error, OverMemory and
-/// Cancelled; `progress` may be null.
-Svdag number_nodes(HashConsedNodes nodes, int levels, MemoryBudget& budget, Progress* progress,
-                   BuildReport& report);
+/// Cancelled.
+Svdag number_nodes(HashConsedNodes nodes, int levels, Work work, BuildReport& report);
+
+/// Returns the minimal DAG, in canonical order, of those voxels that lie in `range` and meet a
+/// triangle. It is a DAG of the whole grid of 2^levels voxels a side, without voxels elsewhere.
+/// `range` is of level `levels` - 2 or coarser. `triangles` are used up. `work` counts the memory
+/// of the build, and not the result. Runs on the current TBB arena. Throws OverMemory, Error if the
+/// DAG outgrows 32-bit pointers, and Cancelled.
+Svdag build_range(CountedVector<QuantizedTriangle> triangles, int levels, const CellRange& range,
+                  Work work = {});
 
 /// Returns the level whose cells are the sub-volumes of kSort and kPaper.
 int sort_bin_level(int levels);

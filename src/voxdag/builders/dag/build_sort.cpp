@@ -11,7 +11,7 @@
 #include "voxdag/builders/dag/build_methods.hpp"
 #include "voxdag/builders/dag/canonical_order.hpp"
 #include "voxdag/builders/dag/join_cells.hpp"
-#include "voxdag/builders/dag/sort_reduce.hpp"
+#include "voxdag/builders/dag/sort_tree.hpp"
 #include "voxdag/builders/dag/stop_watch.hpp"
 #include "voxdag/builders/dag/subvolume.hpp"
 #include "voxdag/core/bits.hpp"
@@ -32,8 +32,7 @@ void require_32_bits(std::uint64_t nodes) {
 
 /// Appends the nodes of `from` below those of `to`, level by level, from `level` down. Returns the
 /// index of the root of `from`. Throws OverMemory before it changes anything.
-std::uint32_t append(SortTree& to, const SortTree& from, std::size_t level,
-                     const Progress* progress) {
+std::uint32_t append(SortTree& to, const SortTree& from, std::size_t level, Work work) {
   const auto end_of = [&](std::size_t l) {
     const std::size_t end = l < to.levels.size() ? to.levels[l].size() : to.leaf_blocks.size();
     require_32_bits(end);
@@ -46,7 +45,7 @@ std::uint32_t append(SortTree& to, const SortTree& from, std::size_t level,
   for (std::size_t l = 0; l < from.levels.size(); ++l) {
     const std::uint32_t below = end_of(level + l + 1);
     for (std::size_t i = 0; i < from.levels[l].size(); ++i) {
-      poll_seldom(progress, i);
+      work.poll_seldom(i);
       SortNode node = from.levels[l][i];
       for (std::uint32_t& pointer : node)
         if (pointer != kNoNode) pointer += below;
@@ -54,7 +53,7 @@ std::uint32_t append(SortTree& to, const SortTree& from, std::size_t level,
     }
   }
   for (std::size_t i = 0; i < from.leaf_blocks.size(); ++i) {
-    poll_seldom(progress, i);
+    work.poll_seldom(i);
     to.leaf_blocks.push_back(from.leaf_blocks[i]);
   }
   return root;
@@ -70,22 +69,23 @@ std::uint64_t reduction_bytes(const SortTree& tree) {
 /// The tree as the `source` of canonical_order(): ids become word offsets, from the leaf blocks up.
 class WordSource {
  public:
-  WordSource(SortTree& tree, MemoryBudget& budget, const Progress* progress) : forwards_(&budget) {
-    for (std::size_t level = 0; level <= tree.levels.size(); ++level) words_.emplace_back(&budget);
+  WordSource(SortTree& tree, Work work) : forwards_(work.memory) {
+    for (std::size_t level = 0; level <= tree.levels.size(); ++level)
+      words_.emplace_back(work.memory);
     forwards_.resize(tree.leaf_blocks.size());
     for (std::size_t i = 0; i < tree.leaf_blocks.size(); ++i) {
-      poll_seldom(progress, i);
+      work.poll_seldom(i);
       words_.back().push_back(static_cast<std::uint32_t>(tree.leaf_blocks[i]));
       words_.back().push_back(static_cast<std::uint32_t>(tree.leaf_blocks[i] >> 32));
     }
-    PageVector<std::uint32_t> offsets(&budget), next(&budget);
+    PageVector<std::uint32_t> offsets(work.memory), next(work.memory);
     offsets.resize(tree.leaf_blocks.size());
     for (std::uint32_t i = 0; i < offsets.size(); ++i) offsets[i] = 2 * i;
     tree.leaf_blocks.release();
     for (std::size_t level = tree.levels.size(); level-- > 0;) {
       next.clear();
       for (std::size_t i = 0; i < tree.levels[level].size(); ++i) {
-        poll_seldom(progress, i);
+        work.poll_seldom(i);
         const SortNode& node = tree.levels[level][i];
         const std::size_t at = words_[level].size();
         next.push_back(static_cast<std::uint32_t>(at));
@@ -120,7 +120,7 @@ class WordSource {
 class SortedSubvolumes {
  public:
   SortedSubvolumes(const BinnedMesh& binned, const BuildInput& input)
-      : tree(std::max(0, input.grid.levels - 2), &input.budget),
+      : tree(std::max(0, input.grid.levels - 2), input.work.memory),
         roots(binned.bins.cells.size(), kNoNode),
         bytes(binned.bins.cells.size()),
         binned_(binned),
@@ -131,9 +131,8 @@ class SortedSubvolumes {
     const SubvolumeBins& bins = binned_.bins;
     const int levels = input_.grid.levels, log2_size = levels - bins.level;
     const Vec3i cell = morton_decode(bins.cells[i]);
-    SubvolumeContext<TreeSink> context(binned_.mesh, levels,
-                                       TreeSink(levels, bins.level, input_.budget), input_.budget,
-                                       input_.progress);
+    SubvolumeContext<TreeSink> context(
+        binned_.mesh, levels, TreeSink(levels, bins.level, *input_.work.memory), input_.work);
     const NodeId root = build_subvolume(
         context,
         {{cell.x << log2_size, cell.y << log2_size, cell.z << log2_size}, log2_size, bins.list(i)});
@@ -142,10 +141,10 @@ class SortedSubvolumes {
     SortTree reduced = std::move(context.sink.tree);
     bytes[i] = static_cast<double>(reduced.bytes() + reduction_bytes(reduced));
     const bool one_at_a_time = input_.method == BuildMethod::kPaper;
-    reduce_by_sorting(reduced, false, one_at_a_time, times, input_.budget, input_.progress);
+    reduce_by_sorting(reduced, false, one_at_a_time, times, input_.work);
     StopWatch watch;
     const std::lock_guard guard(mutex_);
-    roots[i] = append(tree, reduced, bins.level, input_.progress);
+    roots[i] = append(tree, reduced, bins.level, input_.work);
     // With several threads, much of this time is spent in waiting for each other.
     if (one_at_a_time) times.reduce += watch.lap();
   }
@@ -168,7 +167,7 @@ SortTimes add_in_parallel(SortedSubvolumes& subvolumes, const BuildInput& input)
   // Sub-volumes that did not fit into memory together are built again, one at a time.
   std::vector<std::size_t> postponed;
   std::mutex postponed_mutex;
-  polled_for(count, 1, input.progress, "voxelize", [&](std::size_t i) {
+  polled_for(count, 1, input.work, "voxelize", [&](std::size_t i) {
     try {
       subvolumes.add(i, times.local());
     } catch (const OverMemory&) {
@@ -191,10 +190,9 @@ SortTimes add_in_order(SortedSubvolumes& subvolumes, const BuildInput& input) {
   SortTimes times;
   const std::size_t count = subvolumes.roots.size();
   for (std::size_t i = 0; i < count; ++i) {
-    poll(input.progress);
+    input.work.poll();
     subvolumes.add(i, times);
-    if (input.progress != nullptr)
-      input.progress->report("voxelize", static_cast<double>(i + 1) / static_cast<double>(count));
+    input.work.report("voxelize", static_cast<double>(i + 1) / static_cast<double>(count));
   }
   return times;
 }
@@ -212,7 +210,7 @@ SortTree voxelize_by_sorting(const BuildInput& input, BuildReport& report, Stage
   const bool one_at_a_time = input.method == BuildMethod::kPaper;
   const std::size_t threads = one_at_a_time ? 1 : thread_count(bins.cells.size());
   bytes.prepare = binned.prepare_bytes;
-  bytes.voxelize_fixed = static_cast<double>(input.budget.used()) +
+  bytes.voxelize_fixed = static_cast<double>(input.work.memory->used()) +
                          static_cast<double>(threads) * list_scratch_bytes(bins);
 
   SortedSubvolumes subvolumes(binned, input);
@@ -246,12 +244,12 @@ Svdag merge_and_number(SortTree tree, const BuildInput& input, BuildReport& repo
   if (tree.leaf_blocks.empty()) return dag;
   StopWatch watch;
   SortTimes times;
-  reduce_by_sorting(tree, true, true, times, input.budget, input.progress);
+  reduce_by_sorting(tree, true, true, times, input.work);
   report.reduce_seconds += times.reduce;
   report.sort_seconds += times.sort;
   report.merge_seconds = watch.lap();
-  WordSource source(tree, input.budget, input.progress);
-  dag = canonical_order(source, dag.levels, 0, &input.budget, input.progress);
+  WordSource source(tree, input.work);
+  dag = canonical_order(source, dag.levels, 0, input.work);
   report.canonical_seconds = watch.lap();
   return dag;
 }

@@ -4,7 +4,7 @@
 
 #include "voxdag/core/grid.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
@@ -23,13 +23,6 @@ enum class BuildMethod {
   kPaper,
 };
 
-struct BuildOptions {
-  BuildMethod method = BuildMethod::kHashConsed;
-  /// Counts the memory of the build and limits it. The build does not count the mesh; its owner
-  /// does. Null means no limit.
-  MemoryBudget* memory = nullptr;
-};
-
 /// The stages of a build. Seconds are wall-clock.
 struct BuildReport {
   double quantize_seconds = 0;   ///< Vertices to integers, triangles into sub-volumes.
@@ -41,21 +34,21 @@ struct BuildReport {
   double reduce_seconds = 0;
   double sort_seconds = 0;
   std::uint64_t subvolumes = 0;
-  std::uint64_t peak_bytes = 0;  ///< Most bytes that BuildOptions::memory counted; 0 without one.
+  std::uint64_t peak_bytes = 0;  ///< Most bytes that the budget counted.
 };
 
 struct BuildResult {
   Svdag dag;
   BuildReport report;
-  MemoryReservation memory;  ///< Counts `dag` in BuildOptions::memory, which must outlive it.
+  MemoryReservation memory;  ///< Counts `dag` in the budget of the work.
 };
 
 /// Builds the DAG of all voxels of `grid` that the mesh's triangles meet (design: exact cover).
 /// Runs on the current TBB arena. The result depends on mesh and grid alone: not on threads, method
 /// or machine. Throws OverMemory, with an estimate of the memory that the build needs, if the limit
 /// is too small; it does so before the work if the limit is clearly too small. Throws Error if the
-/// DAG outgrows 32-bit pointers, and Cancelled if `progress` was cancelled.
-BuildResult build_svdag(const Mesh& mesh, const Grid& grid, const BuildOptions& options = {},
-                        Progress* progress = nullptr);
+/// DAG outgrows 32-bit pointers, and Cancelled. The build does not count the mesh; its owner does.
+BuildResult build_svdag(const Mesh& mesh, const Grid& grid,
+                        BuildMethod method = BuildMethod::kHashConsed, Work work = {});
 
 }  // namespace voxdag

@@ -9,7 +9,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
@@ -20,12 +20,11 @@ namespace voxdag {
 ///   void prefetch(level, id)                 starts loading both; ids may be any numbers
 ///   void release(level)                      frees a level that is not needed any more
 ///   std::uint64_t node_words(), leaf_blocks()  return upper bounds for what is reachable
-/// The children of level l-1 are ids of level l. `root` is of level 0. `budget` counts
-/// the new DAG until the call returns; it and `progress` may be null. Throws Error if the DAG
-/// outgrows 32-bit pointers, OverMemory and Cancelled.
+/// The children of level l-1 are ids of level l. `root` is of level 0. `work` counts the new DAG
+/// until the call returns. Throws Error if the DAG outgrows 32-bit pointers, OverMemory and
+/// Cancelled.
 template <class Source>
-Svdag canonical_order(Source& source, int levels, std::uint32_t root, MemoryBudget* budget,
-                      Progress* progress) {
+Svdag canonical_order(Source& source, int levels, std::uint32_t root, Work work) {
   // The mask word of a placed node becomes its new place plus kPlaced, which is greater than any
   // mask.
   constexpr std::uint64_t kPlaced = 256;
@@ -34,8 +33,8 @@ Svdag canonical_order(Source& source, int levels, std::uint32_t root, MemoryBudg
   const int leaf_level = levels - 2;
   if (source.node_words() + kPlaced > 0xFFFFFFFFull)
     throw Error("the DAG is too large: its nodes have more words than 32-bit pointers can address");
-  const MemoryReservation copy(budget, source.node_words() * sizeof(std::uint32_t) +
-                                           source.leaf_blocks() * sizeof(std::uint64_t));
+  const MemoryReservation copy(work.memory, source.node_words() * sizeof(std::uint32_t) +
+                                                source.leaf_blocks() * sizeof(std::uint64_t));
   dag.nodes.reserve(source.node_words());
   dag.leaf_blocks.reserve(source.leaf_blocks());
 
@@ -71,9 +70,9 @@ Svdag canonical_order(Source& source, int levels, std::uint32_t root, MemoryBudg
   for (int level = 0; level < leaf_level; ++level) {
     const std::uint64_t begin = dag.level_begin[level], end = dag.nodes.size();
     for (std::uint64_t at = begin; at < end;) {
-      if (at >= next_poll && progress != nullptr) {
-        progress->throw_if_cancelled();
-        progress->report("number", static_cast<double>(at) / all_words, at);
+      if (at >= next_poll) {
+        work.poll();
+        work.report("number", static_cast<double>(at) / all_words, at);
         next_poll = at + kWordsPerPoll;
       }
       const int children = popcount(dag.nodes[at]);

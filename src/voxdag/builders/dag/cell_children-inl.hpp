@@ -15,7 +15,6 @@
 #include <cstdint>
 
 #include "voxdag/builders/dag/node_store.hpp"
-#include "voxdag/builders/dag/pending_node.hpp"
 #include "voxdag/builders/voxelize/block_bits.hpp"
 #include "voxdag/builders/voxelize/cell_triangle-inl.hpp"
 #include "voxdag/core/morton.hpp"

@@ -25,10 +25,10 @@ double uniform(std::mt19937_64& random) { return static_cast<double>(random() >>
 /// Generates random points of the surface, uniform by area.
 class SurfacePoints {
  public:
-  SurfacePoints(const QuantizedMesh& mesh, const Progress* progress) : mesh_(mesh) {
+  SurfacePoints(const QuantizedMesh& mesh, Work work) : mesh_(mesh) {
     double sum = 0;
     for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
-      poll_seldom(progress, i);
+      work.poll_seldom(i);
       if (mesh.in_range(i)) {
         const QuantizedTriangle t = mesh.triangle(i);
         const Vec3d n = cross(static_cast<Vec3d>(t.y) - static_cast<Vec3d>(t.x),
@@ -62,12 +62,11 @@ class SurfacePoints {
 
 /// Returns `count` cells of `level`, sorted by x, y and z.
 std::vector<Vec3i> sample_cells(const SurfacePoints& surface, int levels, int level,
-                                std::uint64_t count, std::mt19937_64& random,
-                                const Progress* progress) {
+                                std::uint64_t count, std::mt19937_64& random, Work work) {
   const std::int64_t n = std::int64_t{1} << levels;
   std::vector<Vec3i> cells;
   while (cells.size() < count) {
-    poll_seldom(progress, cells.size());
+    work.poll_seldom(cells.size());
     const std::uint64_t kind = random() % 8;
     Vec3i v;
     if (kind == 0) {
@@ -95,12 +94,11 @@ std::vector<Vec3i> sample_cells(const SurfacePoints& surface, int levels, int le
 /// Returns for each of `cells` (sorted by x) whether a triangle meets it. Tests every triangle
 /// against the cells in its box.
 std::unique_ptr<std::atomic<bool>[]> covered_cells(const QuantizedMesh& mesh, int levels, int level,
-                                                   const std::vector<Vec3i>& cells,
-                                                   Progress* progress) {
+                                                   const std::vector<Vec3i>& cells, Work work) {
   std::unique_ptr<std::atomic<bool>[]> covered(new std::atomic<bool>[cells.size()]());
   const int shift = levels - level + 8;
   const std::int64_t size = std::int64_t{1} << shift;
-  polled_for(mesh.triangle_count(), 256, progress, "cover", [&](std::size_t index) {
+  polled_for(mesh.triangle_count(), 256, work, "cover", [&](std::size_t index) {
     if (!mesh.in_range(index)) return;
     const QuantizedTriangle t = mesh.triangle(index);
     const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
@@ -122,12 +120,12 @@ std::unique_ptr<std::atomic<bool>[]> covered_cells(const QuantizedMesh& mesh, in
 }  // namespace
 
 CoverCheck check_cover(const SvdagView& dag, const Grid& grid, const Mesh& mesh,
-                       std::uint64_t samples, std::uint64_t seed, Progress* progress) {
+                       std::uint64_t samples, std::uint64_t seed, Work work) {
   if (dag.levels != grid.levels) throw Error("the grid and the DAG differ in resolution");
   CoverCheck check;
   if (mesh.triangles.empty()) return check;
-  const QuantizedMesh quantized(mesh, grid, nullptr, progress);
-  const SurfacePoints surface(quantized, progress);
+  const QuantizedMesh quantized(mesh, grid, work);
+  const SurfacePoints surface(quantized, work);
   std::mt19937_64 random(seed);
   const int coarsest = std::max(0, grid.levels - kCoarserLevels);
   std::uint64_t left = samples;
@@ -138,10 +136,10 @@ CoverCheck check_cover(const SvdagView& dag, const Grid& grid, const Mesh& mesh,
       const std::uint64_t count = std::min(left - to_leave, kCellsAtOnce);
       left -= count;
       const std::vector<Vec3i> cells =
-          sample_cells(surface, grid.levels, level, count, random, progress);
-      const auto covered = covered_cells(quantized, grid.levels, level, cells, progress);
+          sample_cells(surface, grid.levels, level, count, random, work);
+      const auto covered = covered_cells(quantized, grid.levels, level, cells, work);
       for (std::size_t i = 0; i < cells.size(); ++i) {
-        poll_seldom(progress, i);
+        work.poll_seldom(i);
         const bool expected = covered[i].load(std::memory_order_relaxed);
         check.covered += expected ? 1 : 0;
         if (svdag_contains(dag, cells[i], level) == expected) continue;

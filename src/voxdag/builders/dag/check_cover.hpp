@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
@@ -23,6 +23,6 @@ struct CoverCheck {
 /// levels above. Shares only the quantisation of vertices with the builder. The result depends on
 /// the arguments alone. Throws Error if grid and DAG differ in resolution, and Cancelled.
 CoverCheck check_cover(const SvdagView& dag, const Grid& grid, const Mesh& mesh,
-                       std::uint64_t samples, std::uint64_t seed = 1, Progress* progress = nullptr);
+                       std::uint64_t samples, std::uint64_t seed = 1, Work work = {});
 
 }  // namespace voxdag

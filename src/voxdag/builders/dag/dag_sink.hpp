@@ -6,8 +6,6 @@
 #include <vector>
 
 #include "voxdag/builders/dag/node_store.hpp"
-#include "voxdag/builders/dag/page_array.hpp"
-#include "voxdag/builders/dag/pending_node.hpp"
 #include "voxdag/builders/dag/plane_memo.hpp"
 #include "voxdag/core/memory_budget.hpp"
 
@@ -26,7 +24,7 @@ class DagSink {
         memo(log2_memo_sets),
         stores_(stores),
         runs_(stores.size()),
-        leaf_cache_(std::size_t{1} << kCacheBits) {}
+        leaf_cache_(PageVector<CachedLeaf>::zeros(std::size_t{1} << kCacheBits)) {}
 
   /// Returns the bytes that a sink takes.
   static constexpr std::uint64_t bytes(int log2_memo_sets) {
@@ -101,7 +99,7 @@ class DagSink {
  private:
   std::span<const std::unique_ptr<NodeStore>> stores_;
   std::vector<NodeStore::Run> runs_;  // per level
-  PageArray<CachedLeaf> leaf_cache_;
+  PageVector<CachedLeaf> leaf_cache_;
 };
 
 }  // namespace voxdag

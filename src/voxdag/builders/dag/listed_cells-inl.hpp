@@ -7,11 +7,13 @@
 #define VOXDAG_LISTED_CELLS_INL
 #endif
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <numeric>
 
-#include "voxdag/builders/dag/slab_cell-inl.hpp"
+#include "voxdag/builders/dag/cell_children-inl.hpp"
+#include "voxdag/builders/dag/plane_memo.hpp"
 #include "voxdag/builders/dag/subvolume.hpp"
 #include "voxdag/builders/voxelize/cell_classify.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
@@ -19,6 +21,47 @@
 HWY_BEFORE_NAMESPACE();
 namespace voxdag {
 namespace HWY_NAMESPACE {
+
+/// Returns the node of a cell of 2^log2_size voxels a side (at least 8) that contains the voxels of
+/// a slab, whose least value relative to the cell is `lo`, and nothing else (see "Plane memo" in
+/// the design).
+template <class Sink>
+SlabNode slab_cell(Sink& sink, int levels, const PlaneSlab& plane, std::int64_t lo, int log2_size) {
+  constexpr std::uint64_t kUnbounded = ~std::uint64_t{0} >> 2;
+  SlabNode result;
+  if (sink.memo.find(plane, lo, log2_size, result)) return result;
+  result = {kNoNode, kUnbounded, kUnbounded};
+  const std::int64_t half = std::int64_t{1} << (log2_size - 1), last = half - 1;
+  const Vec3l& n = plane.normal;
+  const std::int64_t most =
+      last * (detail::positive(n.x) + detail::positive(n.y) + detail::positive(n.z));
+  const std::int64_t least =
+      last * (detail::negative(n.x) + detail::negative(n.y) + detail::negative(n.z));
+  Children<Sink> children(sink, levels, log2_size - 1);
+  for (int child = 0; child < 8; ++child) {
+    const std::int64_t child_lo = lo - (child & 1 ? n.x * half : 0) - (child & 2 ? n.y * half : 0) -
+                                  (child & 4 ? n.z * half : 0);
+    std::uint64_t down = kUnbounded, up = kUnbounded;
+    if (child_lo > most) {
+      down = static_cast<std::uint64_t>(child_lo - most - 1);
+    } else if (child_lo + plane.width < least) {
+      up = static_cast<std::uint64_t>(least - child_lo - plane.width - 1);
+    } else if (log2_size == 3) {
+      const SlabBlock part = slab_block(plane, child_lo);
+      children.add(child, leaf_block_cell(part.mask));
+      down = part.down, up = part.up;
+    } else {
+      const SlabNode part = slab_cell(sink, levels, plane, child_lo, log2_size - 1);
+      children.add(child, {{}, part.id});
+      down = part.down, up = part.up;
+    }
+    result.down = std::min(result.down, down);
+    result.up = std::min(result.up, up);
+  }
+  result.id = intern_cell(sink, levels, log2_size, {children.node(), kNoNode});
+  sink.memo.insert(plane, lo, log2_size, result);
+  return result;
+}
 
 template <class Sink>
 class ListedCells {
@@ -87,7 +130,7 @@ class ListedCells {
 
   /// Goes down two levels: each triangle's 4³ grandchildren are one mask.
   Cell cell_by_64(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
-    poll(context_.progress);
+    context_.work.poll();
     const std::size_t classified = context_.classified.size();
     std::uint64_t any = 0;
     for (std::size_t i = first; i < first + count; ++i) {
@@ -148,7 +191,7 @@ class ListedCells {
           return {{}, slab_cell(sink_, context_.levels, t.plane, slab_lo_at(t, at), log2_size).id};
       }
     }
-    if (log2_size >= 6) poll(context_.progress);
+    if (log2_size >= 6) context_.work.poll();
     const std::int32_t half = std::int32_t{1} << (log2_size - 1);
     const ChildConditions conditions = classify_children(t, item.conditions, at, half);
     Children<Sink> children(sink_, context_.levels, log2_size - 1);

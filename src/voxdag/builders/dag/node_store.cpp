@@ -35,7 +35,7 @@ std::uint64_t table_bytes(std::uint64_t bits) {
 }
 
 /// Makes all pages of an array resident.
-void touch(PageArray<std::uint64_t>& array) {
+void touch(PageVector<std::uint64_t>& array) {
   constexpr std::size_t kPage = 4096 / sizeof(std::uint64_t);
   for (std::size_t i = 0; i < array.size(); i += kPage)
     *static_cast<volatile std::uint64_t*>(&array[i]) = 0;
@@ -43,42 +43,27 @@ void touch(PageArray<std::uint64_t>& array) {
 
 }  // namespace
 
-std::uint64_t* NodeStore::find(const Table& table, std::uint32_t tag, const std::uint32_t* words,
-                               int count, std::uint64_t& slot) const {
-  for (std::uint64_t i = tag & table.last;; i = (i + 1) & table.last) {
-    std::uint64_t& here = table.slots[i];
-    // Acquires the words that the slot's writer stored before the slot.
-    slot = std::atomic_ref(here).load(std::memory_order_acquire);
-    if (slot == 0) return &here;
-    if (slot >> 32 != tag) continue;
-    const std::uint32_t* stored = this->words(static_cast<std::uint32_t>(slot) - 1);
-    // If the first words are equal, the lengths are equal, so the other words may be read.
-    if (stored[0] == words[0] && std::equal(words + 1, words + count, stored + 1)) return &here;
-  }
-}
-
 void NodeStore::prefetch_found(std::uint64_t hash) const {
-  const Table table = table_of(hash);
+  const NumberSlots table = table_of(hash);
   if (table.slots == nullptr) return;
-  constexpr std::uint64_t kProbes = 4;
-  for (std::uint64_t i = 0; i < kProbes; ++i) {
-    std::uint64_t& here = table.slots[(tag_of(hash) + i) & table.last];
-    const std::uint64_t slot = std::atomic_ref(here).load(std::memory_order_acquire);
-    if (slot == 0) return;
-    if (slot >> 32 != tag_of(hash)) continue;
-    __builtin_prefetch(words(static_cast<std::uint32_t>(slot) - 1));
-    return;
-  }
+  std::uint64_t slot = 0;
+  table.find(
+      NumberSlots::tag_of(hash), [](NodeId) { return true; }, slot);
+  if (slot != 0) __builtin_prefetch(words(NumberSlots::number_of(slot)));
 }
 
 NodeId NodeStore::intern(const std::uint32_t* words, int count, std::uint64_t hash, Run& run) {
-  const std::uint32_t shard_index = shard_of(hash), tag = tag_of(hash);
-  const auto id_of = [](std::uint64_t slot) { return static_cast<NodeId>(slot) - 1; };
+  const std::uint32_t shard_index = shard_of(hash), tag = NumberSlots::tag_of(hash);
+  const auto is_equal = [&](NodeId id) {
+    const std::uint32_t* stored = this->words(id);
+    // If the first words are equal, the lengths are equal, so the other words may be read.
+    return stored[0] == words[0] && std::equal(words + 1, words + count, stored + 1);
+  };
   std::uint64_t slot = 0;
-  const Table before = table_of(hash);
+  const NumberSlots before = table_of(hash);
   if (before.slots != nullptr) {
-    find(before, tag, words, count, slot);
-    if (slot != 0) return id_of(slot);
+    before.find(tag, is_equal, slot);
+    if (slot != 0) return NumberSlots::number_of(slot);
   } else {
     grow(shard_index);
   }
@@ -90,23 +75,22 @@ NodeId NodeStore::intern(const std::uint32_t* words, int count, std::uint64_t ha
     bool added = false, to_grow = false;
     {
       const SpinLock guard(shard.lock);
-      const Table table = table_of(hash);
-      std::uint64_t* free = find(table, tag, words, count, slot);
-      if (slot != 0) return id_of(slot);
+      const NumberSlots table = table_of(hash);
+      std::uint64_t* free = table.find(tag, is_equal, slot);
+      if (slot != 0) return NumberSlots::number_of(slot);
       const std::uint64_t eighths = (shard.node_count + std::uint64_t{1}) * 8;
-      const std::uint64_t slots = table.last + 1;
-      added = eighths <= slots * kFullEighths;
+      added = eighths <= table.count * kFullEighths;
       if (added) {
-        slot = static_cast<std::uint64_t>(tag) << 32 | (run.next + 1);
+        slot = NumberSlots::slot_of(tag, run.next);
         std::atomic_ref(*free).store(slot, std::memory_order_release);
         run.next += static_cast<std::uint32_t>(count);
         shard.word_count += static_cast<std::uint32_t>(count);
         ++shard.node_count;
       }
-      if (eighths > slots * kGrowEighths && !shard.growing) shard.growing = to_grow = true;
+      if (eighths > table.count * kGrowEighths && !shard.growing) shard.growing = to_grow = true;
     }
     if (to_grow) grow(shard_index);
-    if (added) return id_of(slot);
+    if (added) return NumberSlots::number_of(slot);
     if (!to_grow) std::this_thread::yield();
   }
 }
@@ -122,12 +106,10 @@ void NodeStore::take_run(Run& run) {
   const std::size_t chunk_words = std::size_t{1} << (kFirstChunkBits + chunk);
   std::uint64_t bytes = std::uint64_t{words} * 4;
   // Large chunks become resident in whole huge pages.
-  if (chunk_words * 4 >= PageArray<std::uint32_t>::kHugePage)
-    bytes = std::uint64_t{end_ - chunk_begin(chunk)} * 4 % PageArray<std::uint32_t>::kHugePage == 0
-                ? PageArray<std::uint32_t>::kHugePage
-                : 0;
+  if (chunk_words * 4 >= kHugePage)
+    bytes = std::uint64_t{end_ - chunk_begin(chunk)} * 4 % kHugePage == 0 ? kHugePage : 0;
   MemoryReservation reserved(budget_, bytes);
-  if (chunks_[chunk].size() == 0) chunks_[chunk] = PageArray<std::uint32_t>(chunk_words);
+  if (chunks_[chunk].empty()) chunks_[chunk] = PageVector<std::uint32_t>::zeros(chunk_words);
   reserved.keep();
   run = {end_, end_ + words};
   end_ += words;
@@ -140,11 +122,11 @@ void NodeStore::grow(std::uint32_t shard_index) {
   Shard& shard = shards_[shard_index];
   const std::uint64_t packed = tables_[shard_index].load(std::memory_order_acquire);
   const std::uint64_t bits = packed == 0 ? kFirstSlotsBits : (packed & 63) + 1;
-  PageArray<std::uint64_t> larger;
+  PageVector<std::uint64_t> larger;
   MemoryReservation reserved;
   try {
     reserved = MemoryReservation(budget_, table_bytes(bits));
-    larger = PageArray<std::uint64_t>(std::size_t{1} << bits);
+    larger = PageVector<std::uint64_t>::zeros(std::size_t{1} << bits);
   } catch (...) {
     const SpinLock guard(shard.lock);
     shard.growing = false;
@@ -155,21 +137,14 @@ void NodeStore::grow(std::uint32_t shard_index) {
   const SpinLock guard(shard.lock);
   if (tables_[shard_index].load(std::memory_order_relaxed) != packed) return;
   reserved.keep();
-  const std::uint64_t last = larger.size() - 1;
-  if (packed != 0) {
-    const auto* old = reinterpret_cast<const std::uint64_t*>(packed & ~std::uint64_t{63});
-    for (std::uint64_t i = 0; i <= last / 2; ++i) {
-      if (old[i] == 0) continue;
-      std::uint64_t to = (old[i] >> 32) & last;
-      while (larger[to] != 0) to = (to + 1) & last;
-      larger[to] = old[i];
-    }
-  }
+  if (packed != 0)
+    NumberSlots{larger.data(), larger.size()}.add_all(
+        {shard.tables.back().data(), shard.tables.back().size()});
   tables_[shard_index].store(reinterpret_cast<std::uint64_t>(larger.data()) | bits,
                              std::memory_order_release);
   if (!shard.tables.empty()) {
     shard.tables.back().discard();
-    budget_->release(shard.tables.back().mapped_bytes());
+    budget_->release(shard.tables.back().bytes());
   }
   shard.tables.push_back(std::move(larger));
   shard.growing = false;
@@ -190,7 +165,7 @@ std::uint64_t NodeStore::word_count() const {
 void NodeStore::release_slots() {
   for (int i = 0; i < kShards; ++i) {
     auto& tables = shards_[i].tables;
-    if (!tables.empty()) budget_->release(tables.back().mapped_bytes());
+    if (!tables.empty()) budget_->release(tables.back().bytes());
     tables.clear();
     tables_[i].store(0, std::memory_order_relaxed);
   }
@@ -199,7 +174,7 @@ void NodeStore::release_slots() {
 void NodeStore::release() {
   release_slots();
   for (int i = 0; i < kShards; ++i) shards_[i].node_count = 0, shards_[i].word_count = 0;
-  for (auto& chunk : chunks_) PageArray<std::uint32_t>().swap(chunk);
+  for (auto& chunk : chunks_) chunk.release();
   budget_->release(std::exchange(word_bytes_, 0));
   end_ = 0;
 }

@@ -8,8 +8,7 @@
 /// lock is held while memory is allocated. The ids depend on timing; canonical_order() makes the
 /// result independent of it.
 ///
-///   id      | word offset (32 bits) |
-///   slot    | 32 bits of hash | id + 1 |     0 = free; linear probing
+///   id      | word offset (32 bits), the number in a slot (core/number_table.hpp) |
 ///   table   | address, log2 of the number of slots in its low 6 bits |
 #include <array>
 #include <atomic>
@@ -20,26 +19,20 @@
 #include <utility>
 #include <vector>
 
-#include "voxdag/builders/dag/page_array.hpp"
-#include "voxdag/core/int128.hpp"
-#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/number_table.hpp"
+#include "voxdag/core/page_vector.hpp"
 
 namespace voxdag {
 
 using NodeId = std::uint32_t;
 inline constexpr NodeId kNoNode = 0xFFFFFFFFu;
 
-/// Returns a hash of a node's words: 64-bit multiply and fold.
-inline std::uint64_t hash_words(const std::uint32_t* words, int count) {
-  std::uint64_t h = 0x9E3779B97F4A7C15ull ^ static_cast<std::uint64_t>(count);
-  for (int i = 0; i < count; i += 2) {
-    const std::uint64_t pair =
-        words[i] | (i + 1 < count ? static_cast<std::uint64_t>(words[i + 1]) << 32 : 0);
-    const Uint128 product = static_cast<Uint128>(h ^ pair) * 0xD6E8FEB86659FD93ull;
-    h = static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
-  }
-  return h ^ (h >> 32);
-}
+/// The words of a node that has no id yet. An empty cell has count 0.
+struct PendingNode {
+  std::uint32_t words[9];
+  int count = 0;
+  std::uint64_t hash;
+};
 
 class NodeStore {
  public:
@@ -60,8 +53,9 @@ class NodeStore {
 
   /// Starts loading the slot that intern() of a node with this hash reads first.
   void prefetch(std::uint64_t hash) const {
-    const Table table = table_of(hash);
-    if (table.slots != nullptr) __builtin_prefetch(table.slots + (tag_of(hash) & table.last));
+    const NumberSlots table = table_of(hash);
+    if (table.slots != nullptr)
+      __builtin_prefetch(table.slots + table.first_of(NumberSlots::tag_of(hash)));
   }
   /// Starts loading the words that intern() compares next. Reads the slot, so call it when the load
   /// of prefetch() has had time to finish.
@@ -99,11 +93,6 @@ class NodeStore {
   static constexpr int kChunks = 32 - kFirstChunkBits + 1;
   static constexpr int kShardBits = 4, kShards = 1 << kShardBits;
 
-  struct Table {
-    std::uint64_t* slots;
-    std::uint64_t last;
-  };
-
   struct alignas(64) Shard {
     std::atomic_flag lock = ATOMIC_FLAG_INIT;
     bool growing = false;
@@ -112,7 +101,7 @@ class NodeStore {
     // Old tables keep their addresses until release_slots(), because another thread may be reading
     // them. Their memory is freed and reads as zeros: a lookup finds nothing there and continues in
     // the newest table.
-    std::vector<PageArray<std::uint64_t>> tables;
+    std::vector<PageVector<std::uint64_t>> tables;
   };
 
   static int chunk_of(std::uint32_t offset) {
@@ -123,25 +112,21 @@ class NodeStore {
   static std::uint32_t shard_of(std::uint64_t hash) {
     return static_cast<std::uint32_t>(hash >> (64 - kShardBits));
   }
-  static std::uint32_t tag_of(std::uint64_t hash) { return static_cast<std::uint32_t>(hash); }
 
   /// Returns the table of the hash's shard; `slots` is null before the shard's first node.
-  Table table_of(std::uint64_t hash) const {
+  NumberSlots table_of(std::uint64_t hash) const {
     const std::uint64_t packed = tables_[shard_of(hash)].load(std::memory_order_acquire);
     return {reinterpret_cast<std::uint64_t*>(packed & ~std::uint64_t{63}),
-            (std::uint64_t{1} << (packed & 63)) - 1};
+            std::uint64_t{1} << (packed & 63)};
   }
 
-  /// Returns the slot that holds the words' id, or the free slot where it belongs.
-  std::uint64_t* find(const Table& table, std::uint32_t tag, const std::uint32_t* words, int count,
-                      std::uint64_t& slot) const;
   void take_run(Run& run);
   void grow(std::uint32_t shard_index);
 
   // Kept apart from the shards, because every lookup reads these while adding a node writes to the
   // shards.
   alignas(64) std::array<std::atomic<std::uint64_t>, kShards> tables_{};
-  std::array<PageArray<std::uint32_t>, kChunks> chunks_;
+  std::array<PageVector<std::uint32_t>, kChunks> chunks_;
   std::unique_ptr<Shard[]> shards_{new Shard[kShards]};
   MemoryBudget* budget_;
   std::mutex runs_mutex_;

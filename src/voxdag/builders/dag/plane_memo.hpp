@@ -9,7 +9,6 @@
 #include <cstdint>
 
 #include "voxdag/builders/dag/node_store.hpp"
-#include "voxdag/builders/dag/page_array.hpp"
 #include "voxdag/builders/voxelize/triangle_setup.hpp"
 
 namespace voxdag {
@@ -23,7 +22,8 @@ struct SlabNode {
 
 class PlaneMemo {
  public:
-  explicit PlaneMemo(int log2_sets) : sets_(std::size_t{2} << log2_sets) {}
+  explicit PlaneMemo(int log2_sets)
+      : sets_(PageVector<Entry>::zeros(std::size_t{2} << log2_sets)) {}
 
   /// Returns true and sets `node` if the memo has it. The cell has 2^log2_size voxels a side.
   bool find(const PlaneSlab& slab, std::int64_t lo, int log2_size, SlabNode& node) const {
@@ -77,7 +77,7 @@ class PlaneMemo {
     return sets_.data() + ((h >> 32) & (sets_.size() / 2 - 1)) * 2;
   }
 
-  PageArray<Entry> sets_;
+  PageVector<Entry> sets_;
 };
 
 }  // namespace voxdag

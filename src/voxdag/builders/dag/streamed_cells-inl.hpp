@@ -67,14 +67,14 @@ class StreamedCells {
   template <class Body>
   void for_each_setup(std::size_t first, std::size_t count, const Body& body) {
     for (std::size_t i = first; i < first + count; ++i) {
-      if (i % 1024 == 0) poll(context_.progress);
+      if (i % 1024 == 0) context_.work.poll();
       const std::uint32_t triangle = context_.triangles[i];
       body(triangle, setup(triangle));
     }
   }
 
   Cell listed_cell(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
-    poll(context_.progress);
+    context_.work.poll();
     context_.setups.clear();
     context_.items.clear();
     for (std::size_t i = first; i < first + count; ++i) {

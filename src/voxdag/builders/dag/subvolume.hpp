@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "voxdag/builders/dag/dag_sink.hpp"
-#include "voxdag/builders/dag/tree_sink.hpp"
+#include "voxdag/builders/dag/sort_tree.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/builders/voxelize/triangle_setup.hpp"
 #include "voxdag/core/page_vector.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -33,25 +33,24 @@ struct SubvolumeContext {
     std::uint64_t met;  ///< Grandchildren that the triangle meets, in Morton order.
   };
 
-  /// Refers to `mesh_in` and `progress_in`, which may be null. Throws OverMemory.
-  SubvolumeContext(const QuantizedMesh& mesh_in, int levels_in, Sink sink_in, MemoryBudget& budget,
-                   const Progress* progress_in)
+  /// Refers to `mesh_in`. Throws OverMemory.
+  SubvolumeContext(const QuantizedMesh& mesh_in, int levels_in, Sink sink_in, Work work_in)
       : mesh(&mesh_in),
-        progress(progress_in),
+        work(work_in),
         levels(levels_in),
-        stack(&budget, kStackBytes),
+        stack(work_in.memory, kStackBytes),
         sink(std::move(sink_in)),
-        setups(&budget),
-        items(&budget),
-        classified(&budget),
-        triangles(&budget) {}
+        setups(work_in.memory),
+        items(work_in.memory),
+        classified(work_in.memory),
+        triangles(work_in.memory) {}
 
   /// The most stack that the recursion touches in a thread, with the memory that malloc keeps for
   /// the thread.
   static constexpr std::uint64_t kStackBytes = std::uint64_t{256} << 10;
 
   const QuantizedMesh* mesh;
-  const Progress* progress;
+  Work work;
   int levels;
   MemoryReservation stack;
   Sink sink;

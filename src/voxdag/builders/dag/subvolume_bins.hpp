@@ -7,7 +7,7 @@
 #include "voxdag/builders/voxelize/duplicate_triangles.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/page_vector.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -31,7 +31,6 @@ struct SubvolumeBins {
 /// depends on timing. Time is linear in the size of the lists. Memory is at most 16 bytes per entry
 /// during the call and 4 afterwards. Throws OverMemory and Cancelled.
 SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level,
-                            const CellRange& range, const IndexSet& excluded, MemoryBudget& budget,
-                            Progress* progress);
+                            const CellRange& range, const IndexSet& excluded, Work work);
 
 }  // namespace voxdag

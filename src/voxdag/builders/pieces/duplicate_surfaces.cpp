@@ -75,10 +75,9 @@ class TriangleSurfaces {
 
 }  // namespace
 
-IndexSet find_duplicate_surfaces(const Mesh& mesh, const Appearance* appearance, Progress* progress,
-                                 MemoryBudget* memory) {
-  return find_duplicates(mesh.triangles.size(), TriangleSurfaces(mesh, appearance), memory,
-                         progress, "duplicates");
+IndexSet find_duplicate_surfaces(const Mesh& mesh, const Appearance* appearance, Work work) {
+  return find_duplicates(mesh.triangles.size(), TriangleSurfaces(mesh, appearance), work,
+                         "duplicates");
 }
 
 }  // namespace voxdag

@@ -10,7 +10,6 @@ namespace voxdag {
 /// direction of rotation, with the same appearance: the material and, by corner, normals, texture
 /// coordinates and colours. Without `appearance` (null) only the positions are compared. Cost,
 /// errors and progress are those of find_duplicates.
-IndexSet find_duplicate_surfaces(const Mesh& mesh, const Appearance* appearance,
-                                 Progress* progress = nullptr, MemoryBudget* memory = nullptr);
+IndexSet find_duplicate_surfaces(const Mesh& mesh, const Appearance* appearance, Work work = {});
 
 }  // namespace voxdag

@@ -27,7 +27,7 @@ struct StackedCell {
 
 class PieceStack {
  public:
-  /// Counts its memory in `budget`; null: no limit. Functions that add throw OverMemory.
+  /// Counts its memory in `budget`. Functions that add throw OverMemory.
   explicit PieceStack(MemoryBudget* budget = nullptr);
 
   /// The children that the pieces of a cell meet.

@@ -1,5 +1,6 @@
 #include "voxdag/builders/pieces/surface_sum.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "voxdag/core/bits.hpp"
@@ -52,6 +53,21 @@ VoxelValue voxel_value(const SurfaceSum& sum) {
   const float length2 = dot(normal, normal);
   value.normal = length2 > 0 ? normal * (1 / std::sqrt(length2)) : Vec3f{0, 1, 0};
   return value;
+}
+
+void add_piece(SurfaceSum& sum, const Cell& cell, const TrianglePiece& piece,
+               const SurfaceSample& sample) {
+  // A triangle that only touches the cell has a small weight, so that every voxel has a colour. An
+  // almost transparent piece has a small weight too, because part of it may pass the alpha test.
+  const float area = static_cast<float>(cell.area(piece) + 1e-6) * std::max(sample.coverage, 1e-3f);
+  sum.add(sample.color, sample.normal, area);
+}
+
+SurfaceSum sum_pieces(const Cell& cell, const PieceSampler& sampler) {
+  SurfaceSum sum;
+  for (const TrianglePiece& piece : cell.pieces)
+    add_piece(sum, cell, piece, sampler.sample(cell, piece));
+  return sum;
 }
 
 }  // namespace voxdag

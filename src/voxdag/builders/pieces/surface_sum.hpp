@@ -9,6 +9,7 @@
 /// does not depend on the order of the triangles or on a sliver.
 #include <cmath>
 
+#include "voxdag/builders/pieces/piece_sampler.hpp"
 #include "voxdag/builders/pieces/principal_axis.hpp"
 #include "voxdag/builders/pieces/voxel_value.hpp"
 #include "voxdag/core/vec.hpp"
@@ -48,5 +49,12 @@ struct SurfaceSum {
 
 /// Returns the means as a voxel stores them. A voxel without a normal gets (0, 1, 0).
 VoxelValue voxel_value(const SurfaceSum& sum);
+
+/// Adds a piece of the cell to the sum. `sample` is the piece's mean appearance.
+void add_piece(SurfaceSum& sum, const Cell& cell, const TrianglePiece& piece,
+               const SurfaceSample& sample);
+
+/// Sums the colours and normals of all pieces in the cell.
+SurfaceSum sum_pieces(const Cell& cell, const PieceSampler& sampler);
 
 }  // namespace voxdag

@@ -4,8 +4,8 @@
 
 namespace voxdag {
 
-OddEdges find_odd_edges(const QuantizedMesh& mesh, MemoryBudget* memory, Progress* progress) {
-  const PageVector<std::uint64_t> hashes = sorted_edge_keys(mesh, memory, progress, hash_of_edge);
+OddEdges find_odd_edges(const QuantizedMesh& mesh, Work work) {
+  const PageVector<std::uint64_t> hashes = sorted_edge_keys(mesh, work, hash_of_edge);
   OddEdges odd;
   std::uint64_t first_odd = 0;
   for (std::size_t i = 0; i < hashes.size() && hashes[i] != kNoEdge;) {

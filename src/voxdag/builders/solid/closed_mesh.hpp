@@ -3,8 +3,7 @@
 #include <cstdint>
 
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -16,8 +15,8 @@ struct OddEdges {
 };
 
 /// A mesh without odd edges is closed: each ray crosses its surface an even number of times. Takes
-/// 24 bytes per triangle in `memory`. Triangles that the grid's range clips do not count. Throws
-/// OverMemory and Cancelled; `memory` and `progress` may be null.
-OddEdges find_odd_edges(const QuantizedMesh& mesh, MemoryBudget* memory, Progress* progress);
+/// 24 bytes per triangle in `work`. Triangles that the grid's range clips do not count. Throws
+/// OverMemory and Cancelled.
+OddEdges find_odd_edges(const QuantizedMesh& mesh, Work work);
 
 }  // namespace voxdag

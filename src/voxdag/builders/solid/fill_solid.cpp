@@ -12,7 +12,7 @@
 #include "voxdag/algebra/voxels/voxel_builder.hpp"
 #include "voxdag/builders/solid/closed_mesh.hpp"
 #include "voxdag/builders/solid/parity.hpp"
-#include "voxdag/builders/solid/winding/winding_sheets.hpp"
+#include "voxdag/builders/solid/winding/winding_field.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
@@ -28,9 +28,8 @@ std::string world_text(const Grid& grid, Vec3i units) {
 }
 
 /// Throws Error if the mesh is not closed, so that the parity of crossings has no meaning.
-void check_closed(const QuantizedMesh& mesh, const Grid& grid, MemoryBudget* memory,
-                  Progress* progress) {
-  const OddEdges odd = find_odd_edges(mesh, memory, progress);
+void check_closed(const QuantizedMesh& mesh, const Grid& grid, Work work) {
+  const OddEdges odd = find_odd_edges(mesh, work);
   if (odd.count > 0)
     throw Error("", "",
                 "the mesh is not closed: " + std::to_string(odd.count) +
@@ -51,35 +50,32 @@ struct FullGrid {
 };
 
 /// Returns the DAG of all voxels of a grid, or of none.
-Svdag whole_grid(int levels, bool is_full, MemoryBudget* memory, Progress* progress) {
-  if (is_full) return rewrite(FullGrid(), levels, memory, progress);
+Svdag whole_grid(int levels, bool is_full, Work work) {
+  if (is_full) return rewrite(FullGrid(), levels, work);
   Svdag empty;
   empty.levels = levels;
   return empty;
 }
 
-Svdag fill_by_parity(const SvdagView& cover, const QuantizedMesh& mesh, MemoryBudget* memory,
-                     Progress* progress) {
+Svdag fill_by_parity(const SvdagView& cover, const QuantizedMesh& mesh, Work work) {
   if (cover.is_empty())
-    return whole_grid(cover.levels, are_inside(mesh, {Vec3i{}}, progress).front(), memory,
-                      progress);
-  const EmptyRegions regions(cover, memory, progress);
-  return regions.fill(are_inside(mesh, regions.places(), progress));
+    return whole_grid(cover.levels, are_inside(mesh, {Vec3i{}}, work).front(), work);
+  const EmptyRegions regions(cover, work);
+  return regions.fill(are_inside(mesh, regions.places(), work));
 }
 
 /// Returns the voxels among `codes` that are outside, in the same order.
 PageVector<std::uint64_t> select_outside(const PageVector<std::uint64_t>& codes,
-                                         const WindingField& field, MemoryBudget* memory,
-                                         Progress* progress) {
+                                         const WindingField& field, Work work) {
   // Near voxels at a time, so that most triangles have none behind them.
   constexpr std::size_t kBatch = std::size_t{1} << 20;
-  PageVector<std::uint64_t> outside(memory);
-  CountedVector<Vec3i> voxels(memory);
+  PageVector<std::uint64_t> outside(work.memory);
+  CountedVector<Vec3i> voxels(work.memory);
   for (std::size_t begin = 0; begin < codes.size(); begin += kBatch) {
     voxels.clear();
     for (std::size_t i = begin; i < std::min(codes.size(), begin + kBatch); ++i)
       voxels.push_back(morton_decode(codes[i]));
-    const std::vector<bool> inside = field.are_inside(voxels, memory, progress);
+    const std::vector<bool> inside = field.are_inside(voxels, work);
     for (std::size_t i = 0; i < voxels.size(); ++i)
       if (!inside[i]) outside.push_back(codes[begin + i]);
   }
@@ -87,40 +83,39 @@ PageVector<std::uint64_t> select_outside(const PageVector<std::uint64_t>& codes,
 }
 
 Svdag fill_by_winding(const SvdagView& cover, const QuantizedMesh& mesh, double threshold,
-                      MemoryBudget* memory, Progress* progress) {
-  const WindingField field(mesh, threshold, memory, progress);
-  const PageVector<std::uint64_t> sheets = find_sheets(field, cover, memory, progress);
+                      Work work) {
+  const WindingField field(mesh, threshold, work);
+  const PageVector<std::uint64_t> sheets = find_sheets(field, cover, work);
   if (sheets.empty()) {
     if (cover.is_empty())
-      return whole_grid(cover.levels,
-                        field.are_inside(std::vector{Vec3i{}}, memory, progress).front(), memory,
-                        progress);
-    const EmptyRegions regions(cover, memory, progress);
-    return regions.fill(field.are_inside(regions.places(), memory, progress));
+      return whole_grid(cover.levels, field.are_inside(std::vector{Vec3i{}}, work).front(), work);
+    const EmptyRegions regions(cover, work);
+    return regions.fill(field.are_inside(regions.places(), work));
   }
   // Surface and sheets part the grid; then the voxels of the sheets that are outside go.
-  const Svdag sheet_voxels = svdag_of_sorted(cover.levels, {sheets.data(), sheets.size()}, memory);
-  const Svdag walls = combine(cover, sheet_voxels.view(), SetOperation::kUnion, memory, progress);
-  const EmptyRegions regions(walls.view(), memory, progress);
-  const Svdag filled = regions.fill(field.are_inside(regions.places(), memory, progress));
-  const PageVector<std::uint64_t> outside = select_outside(sheets, field, memory, progress);
+  const Svdag sheet_voxels =
+      svdag_of_sorted(cover.levels, {sheets.data(), sheets.size()}, work.memory);
+  const Svdag walls = combine(cover, sheet_voxels.view(), SetOperation::kUnion, work);
+  const EmptyRegions regions(walls.view(), work);
+  const Svdag filled = regions.fill(field.are_inside(regions.places(), work));
+  const PageVector<std::uint64_t> outside = select_outside(sheets, field, work);
   const Svdag outside_voxels =
-      svdag_of_sorted(cover.levels, {outside.data(), outside.size()}, memory);
-  return combine(filled.view(), outside_voxels.view(), SetOperation::kDifference, memory, progress);
+      svdag_of_sorted(cover.levels, {outside.data(), outside.size()}, work.memory);
+  return combine(filled.view(), outside_voxels.view(), SetOperation::kDifference, work);
 }
 
 }  // namespace
 
 Svdag fill_solid(const SvdagView& cover, const Mesh& mesh, const Grid& grid,
-                 const SolidOptions& options, MemoryBudget* memory, Progress* progress) {
-  if (options.rule == SolidRule::kFlood) return fill_cavities(cover, memory, progress);
-  const QuantizedMesh quantized(mesh, grid, memory, progress);
+                 const SolidOptions& options, Work work) {
+  if (options.rule == SolidRule::kFlood) return fill_cavities(cover, work);
+  const QuantizedMesh quantized(mesh, grid, work);
   if (quantized.triangle_count() != quantized.mesh_triangle_count())
     throw Error("", "", "the mesh reaches too far out of the grid to tell what is inside");
   if (options.rule == SolidRule::kWinding)
-    return fill_by_winding(cover, quantized, options.winding_threshold, memory, progress);
-  check_closed(quantized, grid, memory, progress);
-  return fill_by_parity(cover, quantized, memory, progress);
+    return fill_by_winding(cover, quantized, options.winding_threshold, work);
+  check_closed(quantized, grid, work);
+  return fill_by_parity(cover, quantized, work);
 }
 
 }  // namespace voxdag

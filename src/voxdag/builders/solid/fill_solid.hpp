@@ -3,8 +3,7 @@
 #include <cstdint>
 
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
@@ -35,10 +34,8 @@ struct SolidOptions {
 /// with `cover`, the mesh and the area of its holes, not with the voxels.
 ///
 /// kParity throws Error if the mesh is not closed. kParity and kWinding throw Error if the mesh
-/// reaches out of the range of QuantizedMesh. Throws OverMemory and Cancelled; `memory` and
-/// `progress` may be null.
+/// reaches out of the range of QuantizedMesh. Throws OverMemory and Cancelled.
 Svdag fill_solid(const SvdagView& cover, const Mesh& mesh, const Grid& grid,
-                 const SolidOptions& options, MemoryBudget* memory = nullptr,
-                 Progress* progress = nullptr);
+                 const SolidOptions& options, Work work = {});
 
 }  // namespace voxdag

@@ -7,7 +7,7 @@
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/polled_sort.hpp"
-#include "voxdag/core/vec_order.hpp"
+#include "voxdag/core/vec.hpp"
 
 namespace voxdag {
 
@@ -39,23 +39,22 @@ void each_edge(const QuantizedMesh& mesh, std::size_t triangle, const Visit& vis
 inline constexpr std::uint64_t kNoEdge = ~std::uint64_t{0};
 
 /// Returns key_of(a, b) for all edges of the mesh's triangles in ascending order. Edges without a
-/// length have kNoEdge. Takes 24 bytes per triangle in `memory`. Throws OverMemory and Cancelled;
-/// `memory` and `progress` may be null.
+/// length have kNoEdge. Takes 24 bytes per triangle in `work`. Throws OverMemory and Cancelled.
 template <class KeyOf>
-PageVector<std::uint64_t> sorted_edge_keys(const QuantizedMesh& mesh, MemoryBudget* memory,
-                                           Progress* progress, const KeyOf& key_of) {
+PageVector<std::uint64_t> sorted_edge_keys(const QuantizedMesh& mesh, Work work,
+                                           const KeyOf& key_of) {
   const std::size_t count = mesh.mesh_triangle_count();
-  PageVector<std::uint64_t> keys(memory);
+  PageVector<std::uint64_t> keys(work.memory);
   keys.resize(3 * count);
   constexpr std::size_t kChunk = 4096;
-  polled_for((count + kChunk - 1) / kChunk, 1, progress, "edges", [&](std::size_t chunk) {
+  polled_for((count + kChunk - 1) / kChunk, 1, work, "edges", [&](std::size_t chunk) {
     for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
       std::fill_n(keys.begin() + 3 * i, 3, kNoEdge);
       std::size_t place = 3 * i;
       each_edge(mesh, i, [&](Vec3i a, Vec3i b) { keys[place++] = key_of(a, b); });
     }
   });
-  polled_sort(keys.begin(), keys.end(), progress);
+  polled_sort(keys.begin(), keys.end(), work);
   return keys;
 }
 

@@ -50,13 +50,13 @@ bool crosses(const std::array<Vec3l, 3>& t, const Vec3l& p) {
 }  // namespace
 
 std::vector<bool> are_inside(const QuantizedMesh& mesh, const std::vector<Vec3i>& voxels,
-                             Progress* progress) {
+                             Work work) {
   if (voxels.empty()) return {};
   const RayBins bins(voxels, nullptr);
   std::vector<std::uint8_t> odd(voxels.size(), 0);
   constexpr std::size_t kChunk = 1024;
   const std::size_t count = mesh.triangle_count();
-  polled_for((count + kChunk - 1) / kChunk, 1, progress, "inside", [&](std::size_t chunk) {
+  polled_for((count + kChunk - 1) / kChunk, 1, work, "inside", [&](std::size_t chunk) {
     for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
       if (!mesh.in_range(i)) continue;
       const QuantizedTriangle triangle = mesh.triangle(i);

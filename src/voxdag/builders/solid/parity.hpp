@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -11,11 +11,10 @@ namespace voxdag {
 /// triangles. No triangle may meet these voxels. All triangles count, also exact duplicates.
 ///
 /// Exact: the ray lies beside the centre by infinitely small steps in y and, much smaller, in z. So
-/// it meets no edge, and each edge that lies in its way counts to exactly one side.
-/// (Edelsbrunner and Mücke, "Simulation of Simplicity", ACM TOG 1990.) Time grows with the
-/// triangles, and with the voxels that lie behind each of them along x. Throws Cancelled;
-/// `progress` may be null.
+/// it meets no edge, and each edge that lies in its way counts to exactly one side. (Edelsbrunner
+/// and Mücke, "Simulation of Simplicity", ACM TOG 1990.) Time grows with the triangles, and with
+/// the voxels that lie behind each of them along x. Throws Cancelled.
 std::vector<bool> are_inside(const QuantizedMesh& mesh, const std::vector<Vec3i>& voxels,
-                             Progress* progress);
+                             Work work);
 
 }  // namespace voxdag

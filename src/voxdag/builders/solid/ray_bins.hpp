@@ -13,8 +13,7 @@ namespace voxdag {
 /// Voxels by where their rays pass in the plane of y and z.
 class RayBins {
  public:
-  /// There must be voxels. Counts 4 bytes for each in `memory`, which may be null. Throws
-  /// OverMemory.
+  /// There must be voxels. Counts 4 bytes for each in `memory`. Throws OverMemory.
   RayBins(std::span<const Vec3i> voxels, MemoryBudget* memory) : begin_(memory), order_(memory) {
     low_ = voxels.front();
     Vec3i high = low_;

@@ -5,10 +5,6 @@
 namespace voxdag {
 namespace {
 
-bool less(const Vec3i& a, const Vec3i& b) {
-  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-}
-
 class TriangleCorners {
  public:
   explicit TriangleCorners(const QuantizedMesh& mesh) : mesh_(mesh) {}
@@ -35,9 +31,9 @@ class TriangleCorners {
   /// Returns the corners in ascending order.
   QuantizedTriangle sorted(std::size_t triangle) const {
     QuantizedTriangle t = mesh_.triangle(triangle);
-    if (less(t.y, t.x)) std::swap(t.x, t.y);
-    if (less(t.z, t.y)) std::swap(t.y, t.z);
-    if (less(t.y, t.x)) std::swap(t.x, t.y);
+    if (is_before(t.y, t.x)) std::swap(t.x, t.y);
+    if (is_before(t.z, t.y)) std::swap(t.y, t.z);
+    if (is_before(t.y, t.x)) std::swap(t.x, t.y);
     return t;
   }
 
@@ -46,10 +42,8 @@ class TriangleCorners {
 
 }  // namespace
 
-IndexSet find_duplicate_triangles(const QuantizedMesh& mesh, MemoryBudget* budget,
-                                  Progress* progress) {
-  return find_duplicates(mesh.triangle_count(), TriangleCorners(mesh), budget, progress,
-                         "quantize");
+IndexSet find_duplicate_triangles(const QuantizedMesh& mesh, Work work) {
+  return find_duplicates(mesh.triangle_count(), TriangleCorners(mesh), work, "quantize");
 }
 
 }  // namespace voxdag

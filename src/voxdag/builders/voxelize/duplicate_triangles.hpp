@@ -8,7 +8,6 @@ namespace voxdag {
 /// Returns all triangles that are exact duplicates of one with a lower index: they have the same
 /// three corners on the grid, in any order. Triangles that are not in range are in no set; their
 /// pieces are. Cost, errors and progress are those of find_duplicates.
-IndexSet find_duplicate_triangles(const QuantizedMesh& mesh, MemoryBudget* budget = nullptr,
-                                  Progress* progress = nullptr);
+IndexSet find_duplicate_triangles(const QuantizedMesh& mesh, Work work = {});
 
 }  // namespace voxdag

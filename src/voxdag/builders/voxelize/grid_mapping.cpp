@@ -13,6 +13,7 @@
 namespace voxdag {
 namespace {
 
+/// The x of a quantized vertex that lies beyond ±kMaxUnits.
 constexpr std::int32_t kOutOfRange = std::numeric_limits<std::int32_t>::max();
 
 void require_levels(int levels) {
@@ -46,6 +47,7 @@ int levels_for(double voxels) {
   return levels;
 }
 
+/// The mesh of a QuantizedMesh that has none.
 const Mesh kNoMesh;
 
 // Clips by Sutherland-Hodgman against the six planes of the box ±kMaxUnits.
@@ -143,49 +145,46 @@ std::optional<Vec3i> quantize(const Grid& grid, Vec3d world) {
   return q;
 }
 
-QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid, MemoryBudget* budget,
-                             Progress* progress)
+QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid, Work work)
     : mesh_(&mesh),
-      vertices_(mesh.vertices.size(), CountedAllocator<Vec3i>(budget)),
-      clipped_(CountedAllocator<QuantizedTriangle>(budget)),
-      clipped_source_(CountedAllocator<std::uint32_t>(budget)) {
+      vertices_(mesh.vertices.size(), CountedAllocator<Vec3i>(work.memory)),
+      added_(CountedAllocator<QuantizedTriangle>(work.memory)),
+      added_source_(CountedAllocator<std::uint32_t>(work.memory)) {
   std::atomic<bool> any_out_of_range{false};
-  polled_for(vertices_.size(), 4096, progress, "quantize", [&](std::size_t i) {
-    vertices_[i] = quantize(grid, static_cast<Vec3d>(mesh.vertices[i]))
-                       .value_or(Vec3i{kOutOfRange, kOutOfRange, kOutOfRange});
+  polled_for(vertices_.size(), 4096, work, "quantize", [&](std::size_t i) {
+    vertices_[i] =
+        quantize(grid, static_cast<Vec3d>(mesh.vertices[i])).value_or(Vec3i{kOutOfRange, 0, 0});
     if (vertices_[i].x == kOutOfRange) any_out_of_range.store(true, std::memory_order_relaxed);
   });
   if (!any_out_of_range.load()) return;
-  const std::size_t count = mesh.triangles.size();
   std::vector<QuantizedTriangle> pieces;
-  for (std::size_t i = 0; i < count; ++i) {
-    poll_seldom(progress, i);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    work.poll_seldom(i);
     if (in_range(i)) continue;
     const Triangle& t = mesh.triangles[i];
     pieces.clear();
     clip({static_cast<Vec3d>(mesh.vertices[t[0]]), static_cast<Vec3d>(mesh.vertices[t[1]]),
           static_cast<Vec3d>(mesh.vertices[t[2]])},
          grid, pieces);
-    clipped_.insert(clipped_.end(), pieces.begin(), pieces.end());
-    clipped_source_.insert(clipped_source_.end(), pieces.size(), static_cast<std::uint32_t>(i));
+    added_.insert(added_.end(), pieces.begin(), pieces.end());
+    added_source_.insert(added_source_.end(), pieces.size(), static_cast<std::uint32_t>(i));
   }
 }
 
 QuantizedMesh::QuantizedMesh(CountedVector<QuantizedTriangle> triangles)
-    : mesh_(&kNoMesh), clipped_(std::move(triangles)) {}
+    : mesh_(&kNoMesh), added_(std::move(triangles)) {}
 
 bool QuantizedMesh::in_range(std::size_t index) const {
-  if (index >= mesh_->triangles.size()) return true;
-  const Triangle& t = mesh_->triangles[index];
-  return vertices_[t[0]].x != kOutOfRange && vertices_[t[1]].x != kOutOfRange &&
-         vertices_[t[2]].x != kOutOfRange;
+  if (index >= mesh_triangle_count()) return true;
+  const auto is_in_range = [this](std::uint32_t v) { return vertices_[v].x != kOutOfRange; };
+  const auto [a, b, c] = mesh_->triangles[index];
+  return is_in_range(a) && is_in_range(b) && is_in_range(c);
 }
 
 QuantizedTriangle QuantizedMesh::triangle(std::size_t index) const {
-  const std::size_t count = mesh_->triangles.size();
-  if (index >= count) return clipped_[index - count];
-  const Triangle& t = mesh_->triangles[index];
-  return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
+  if (index >= mesh_triangle_count()) return added_[index - mesh_triangle_count()];
+  const auto [a, b, c] = mesh_->triangles[index];
+  return {vertices_[a], vertices_[b], vertices_[c]};
 }
 
 void quantize_triangle(const Grid& grid, const Vec3<Vec3d>& corners,

@@ -9,7 +9,7 @@
 
 #include "voxdag/core/grid.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/mesh_bounds.hpp"
 
 namespace voxdag {
@@ -54,16 +54,15 @@ void quantize_triangle(const Grid& grid, const Vec3<Vec3d>& corners,
 class QuantizedMesh {
  public:
   /// Clips triangles with a vertex beyond ±kMaxUnits to that box, in double precision; each gives
-  /// up to 7 triangles. Such triangles exist only if the grid does not fit the mesh. `budget`
-  /// counts the memory and `progress` is polled; both may be null. Throws OverMemory and Cancelled.
-  QuantizedMesh(const Mesh& mesh, const Grid& grid, MemoryBudget* budget = nullptr,
-                Progress* progress = nullptr);
+  /// up to 7 triangles. Such triangles exist only if the grid does not fit the mesh. Throws
+  /// OverMemory and Cancelled.
+  QuantizedMesh(const Mesh& mesh, const Grid& grid, Work work = {});
   /// Takes triangles that are on the grid's integers already. There is no mesh behind them, so
   /// source() has no meaning.
   explicit QuantizedMesh(CountedVector<QuantizedTriangle> triangles);
 
   /// Returns the number of triangles, with the pieces of clipped ones.
-  std::size_t triangle_count() const { return mesh_->triangles.size() + clipped_.size(); }
+  std::size_t triangle_count() const { return mesh_->triangles.size() + added_.size(); }
   /// Returns the number of the mesh's triangles. They come first, then the pieces of clipped
   /// triangles.
   std::size_t mesh_triangle_count() const { return mesh_->triangles.size(); }
@@ -74,14 +73,15 @@ class QuantizedMesh {
   /// Returns the index of the mesh's triangle that triangle `index` is, or is a piece of.
   std::uint32_t source(std::size_t index) const {
     const std::size_t count = mesh_->triangles.size();
-    return index < count ? static_cast<std::uint32_t>(index) : clipped_source_[index - count];
+    return index < count ? static_cast<std::uint32_t>(index) : added_source_[index - count];
   }
 
  private:
   const Mesh* mesh_;
-  CountedVector<Vec3i> vertices_;
-  CountedVector<QuantizedTriangle> clipped_;
-  CountedVector<std::uint32_t> clipped_source_;
+  CountedVector<Vec3i> vertices_;  ///< Of the mesh.
+  /// The triangles after those of the mesh: pieces of clipped ones, or all if there is no mesh.
+  CountedVector<QuantizedTriangle> added_;
+  CountedVector<std::uint32_t> added_source_;  ///< The mesh's triangle of each piece.
 };
 
 }  // namespace voxdag

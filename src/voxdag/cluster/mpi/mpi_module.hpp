@@ -1,12 +1,13 @@
 #pragma once
 /// The interface of the module that connects ranks through MPI: the only part that links MPI.
 #include "voxdag/cluster/join_ranks.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
 struct MpiModule {
   /// Joins the job of this process. The caller owns the result. Throws Error.
-  Ranks* (*join)(const Progress* progress, const RankOptions& options);
+  Ranks* (*join)(Work work, const RankOptions& options);
 };
 
 /// The name of its file, and of the MpiModule in it.

@@ -6,11 +6,62 @@
 #include <limits>
 #include <utility>
 
-#include "voxdag/cluster/mpi/mpi_file.hpp"
+#include "voxdag/cluster/mpi/mpi_module.hpp"
 #include "voxdag/core/error.hpp"
 
 namespace voxdag {
 namespace {
+
+/// A file that all ranks write through MPI-IO. Its errors do not stop the session, so that ranks
+/// can tell each other about them. If it is destroyed before close(), it stays open until the
+/// process ends, because only all ranks together can close it.
+class MpiFile final : public RankFile {
+ public:
+  /// Opens an existing file. Collective. Writes at most `write_bytes` bytes at once.
+  MpiFile(MpiSession& session, const std::filesystem::path& path, std::uint64_t write_bytes)
+      : session_(session), path_(path), write_bytes_(write_bytes) {
+    // MPI_File_open waits for all ranks, and cannot be cancelled. After a barrier the wait is
+    // short.
+    session.barrier();
+    const int code = session.call([&] {
+      return MPI_File_open(session.comm(), path_.c_str(), MPI_MODE_WRONLY, MPI_INFO_NULL, &file_);
+    });
+    if (code != MPI_SUCCESS) fail(0, "cannot open: " + session_.error_text(code));
+  }
+
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    while (!bytes.empty()) {
+      const std::size_t now = std::min<std::uint64_t>(bytes.size(), write_bytes_);
+      int written = 0;
+      const int code = session_.call([&] {
+        MPI_Status status;
+        const int error = MPI_File_write_at(file_, static_cast<MPI_Offset>(offset), bytes.data(),
+                                            static_cast<int>(now), MPI_BYTE, &status);
+        return error != MPI_SUCCESS ? error : MPI_Get_count(&status, MPI_BYTE, &written);
+      });
+      if (code != MPI_SUCCESS) fail(offset, "cannot write: " + session_.error_text(code));
+      if (written <= 0) fail(offset, "cannot write: MPI wrote no bytes; is the disk full?");
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+      offset += static_cast<std::uint64_t>(written);
+    }
+  }
+
+  void close() override {
+    session_.barrier();
+    const int code = session_.call([&] { return MPI_File_close(&file_); });
+    if (code != MPI_SUCCESS) fail(0, "cannot write: " + session_.error_text(code));
+  }
+
+ private:
+  [[noreturn]] void fail(std::uint64_t offset, const std::string& reason) const {
+    throw Error(path_.string(), ErrorPlace::byte(offset), reason);
+  }
+
+  MpiSession& session_;
+  std::filesystem::path path_;
+  std::uint64_t write_bytes_;
+  MPI_File file_ = MPI_FILE_NULL;
+};
 
 constexpr int kExchangeTag = 1;
 
@@ -24,10 +75,10 @@ void for_each_message(std::byte* bytes, std::size_t count, std::size_t most,
 
 }  // namespace
 
-MpiRanks::MpiRanks(const Progress* progress, const RankOptions& options)
+MpiRanks::MpiRanks(Work work, const RankOptions& options)
     : message_bytes_(options.message_bytes),
       exceptions_(std::uncaught_exceptions()),
-      session_(progress),
+      session_(work),
       counters_(session_, kCounters + 1) {}
 
 MpiRanks::~MpiRanks() {
@@ -142,3 +193,9 @@ std::unique_ptr<RankFile> MpiRanks::open_file(const std::filesystem::path& path)
 }
 
 }  // namespace voxdag
+
+// NOLINTNEXTLINE(readability-identifier-naming): kMpiModuleName
+extern "C" const voxdag::MpiModule voxdag_mpi_module = {
+    [](voxdag::Work work, const voxdag::RankOptions& options) -> voxdag::Ranks* {
+      return new voxdag::MpiRanks(work, options);
+    }};

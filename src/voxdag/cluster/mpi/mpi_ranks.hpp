@@ -6,12 +6,13 @@
 #include "voxdag/cluster/mpi/mpi_counters.hpp"
 #include "voxdag/cluster/mpi/mpi_session.hpp"
 #include "voxdag/cluster/ranks.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
 class MpiRanks final : public Ranks {
  public:
-  MpiRanks(const Progress* progress, const RankOptions& options);
+  MpiRanks(Work work, const RankOptions& options);
   ~MpiRanks() override;
 
   int rank() const override { return session_.rank(); }

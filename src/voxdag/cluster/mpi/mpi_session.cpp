@@ -4,14 +4,49 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <thread>
 #include <vector>
 
-#include "voxdag/cluster/mpi/backoff.hpp"
 #include "voxdag/core/error.hpp"
 
 namespace voxdag {
+namespace {
 
-MpiSession::MpiSession(const Progress* progress) : progress_(progress) {
+/// Pauses between polls: gives the CPU away a few times, then sleeps, longer each time, up to
+/// `longest`.
+class Backoff {
+ public:
+  using Duration = std::chrono::microseconds;
+
+  explicit Backoff(Duration longest) : longest_(longest) {}
+
+  void pause() {
+    if (yields_ < kYields) {
+      ++yields_;
+      std::this_thread::yield();
+      return;
+    }
+    std::this_thread::sleep_for(sleep_);
+    sleep_ = std::min(sleep_ * 2, longest_);
+  }
+  /// Begins with short pauses again.
+  void reset() {
+    yields_ = 0;
+    sleep_ = kShortest;
+  }
+
+ private:
+  static constexpr int kYields = 32;
+  static constexpr Duration kShortest{10};
+
+  Duration longest_, sleep_ = kShortest;
+  int yields_ = 0;
+};
+
+}  // namespace
+
+MpiSession::MpiSession(Work work) : work_(work) {
   int has_begun = 0;
   MPI_Initialized(&has_begun);
   if (has_begun != 0) throw Error("MPI: this process has joined its job already");
@@ -114,7 +149,7 @@ void MpiSession::fail(const char* what, int code) {
 }
 
 void MpiSession::check_cancelled() {
-  if (progress_ == nullptr || !progress_->cancelled()) return;
+  if (!work_.cancelled()) return;
   stop();
   throw Cancelled();
 }

@@ -2,15 +2,36 @@
 /// MPI in this process: begins and ends it, guards its calls, and waits for its requests.
 #include <mpi.h>
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <mutex>
 #include <span>
 #include <string>
 
-#include "voxdag/cluster/mpi/turn_lock.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
+
+/// A mutex that threads get in the order in which they asked for it.
+///
+/// A thread that takes a std::mutex again and again can keep others out for seconds. Here each
+/// thread draws a number and waits for its turn. Meets BasicLockable.
+class TurnLock {
+ public:
+  void lock() {
+    const std::uint32_t mine = drawn_.fetch_add(1, std::memory_order_relaxed);
+    for (std::uint32_t now; (now = turn_.load(std::memory_order_acquire)) != mine;)
+      turn_.wait(now, std::memory_order_acquire);
+  }
+  void unlock() {
+    turn_.fetch_add(1, std::memory_order_release);
+    turn_.notify_all();
+  }
+
+ private:
+  std::atomic<std::uint32_t> drawn_{0}, turn_{0};
+};
 
 /// Every call of MPI goes through call() or run(), which allow one thread at a time. So MPI needs
 /// to support MPI_THREAD_SERIALIZED only.
@@ -20,7 +41,7 @@ namespace voxdag {
 class MpiSession {
  public:
   /// Begins MPI. Throws Error if this process began it before, or if MPI's thread level is lower.
-  explicit MpiSession(const Progress* progress);
+  explicit MpiSession(Work work);
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;
 
@@ -77,8 +98,7 @@ class MpiSession {
   [[noreturn]] static void throw_stopped();
   [[noreturn]] void fail(const char* what, int code);
   void check_cancelled();
-
-  const Progress* progress_;
+  Work work_;
   TurnLock lock_;
   bool is_stopped_ = false;
   MPI_Comm comm_ = MPI_COMM_NULL;

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/large_array.hpp"
+#include "voxdag/core/page_vector.hpp"
 
 namespace voxdag {
 

@@ -1,5 +1,6 @@
 #pragma once
 /// Finds the items that repeat an item with a lower index.
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cstddef>
@@ -7,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "voxdag/core/int128.hpp"
+#include "voxdag/core/number_table.hpp"
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 
@@ -45,44 +46,41 @@ class IndexSet {
   PageVector<std::uint64_t> words_;
 };
 
-/// Returns which of the items 0 to `count` - 1 (at most 2^32) equal one with a lower index.
+/// Returns which of the items 0 to `count` - 1 (fewer than 2^32) equal one with a lower index.
 ///
 /// `items.hash(i)` returns 64 bits that are equal for equal items, or std::nullopt if item i counts
 /// as equal to none; `items.are_equal(a, b)` compares two items. Both are called by several threads
 /// at once. The result does not depend on the number of threads. Time is linear in the items if the
-/// hashes are good. Takes 12 bytes for each item while it works and 1/8 byte after. Polls
-/// `progress`, which may be null, and reports to it as `stage`. Throws OverMemory and Cancelled.
+/// hashes are good. Takes 12 bytes for each item while it works and 1/8 byte after. Counts it in
+/// `work`, polls and reports as `stage`. Throws OverMemory and Cancelled.
 //
-// The table is shared by all threads and uses open addressing with linear probing. A slot holds
-// 32 bits of the hash, of which the lowest is set, and the lowest index seen so far of its item. Of
-// two equal items the one with the higher index is marked, so the marks do not depend on the order.
+// All threads share the table. A slot holds the lowest index seen so far of its item. Of two equal
+// items the one with the higher index is marked, so the marks do not depend on the order.
 template <class Items>
-IndexSet find_duplicates(std::size_t count, const Items& items, MemoryBudget* budget,
-                         Progress* progress, std::string_view stage) {
+IndexSet find_duplicates(std::size_t count, const Items& items, Work work, std::string_view stage) {
   constexpr std::size_t kGrain = 4096;
-  IndexSet duplicates(count, budget);
+  IndexSet duplicates(count, work.memory);
   duplicates.allocate();
-  PageVector<std::uint64_t> slots(budget);
+  PageVector<std::uint64_t> slots(work.memory);
   slots.resize(count + count / 2 + 1);
+  const NumberSlots table{slots.data(), slots.size()};
   std::atomic<bool> any{false};
-  polled_for(count, kGrain, progress, stage, [&](std::size_t i) {
-    const std::optional<std::uint64_t> hash = items.hash(i);
+  polled_for(count, kGrain, work, stage, [&](std::size_t index) {
+    const std::optional<std::uint64_t> hash = items.hash(index);
     if (!hash) return;
-    const std::uint64_t tag = *hash << 32 | std::uint64_t{1} << 32;
-    std::size_t at = static_cast<std::size_t>((static_cast<Uint128>(*hash) * slots.size()) >> 64);
+    const auto i = static_cast<std::uint32_t>(index);
+    const std::uint32_t tag = NumberSlots::tag_of(*hash);
     for (;;) {
-      std::atomic_ref slot(slots[at]);
-      std::uint64_t seen = slot.load(std::memory_order_relaxed);
-      if (seen == 0 && slot.compare_exchange_strong(seen, tag | i, std::memory_order_relaxed))
-        return;
-      const std::size_t other = seen & 0xFFFFFFFF;
-      if ((seen ^ tag) >> 32 != 0 || !items.are_equal(other, i)) {
-        at = at + 1 < slots.size() ? at + 1 : 0;
-        continue;
-      }
-      if (i < other && !slot.compare_exchange_strong(seen, tag | i, std::memory_order_relaxed))
-        continue;
-      duplicates.insert(i < other ? other : i);
+      std::uint64_t seen = 0;
+      std::atomic_ref slot(*table.find(
+          tag, [&](std::uint32_t other) { return items.are_equal(other, i); }, seen));
+      const bool is_new = seen == 0;
+      const std::uint32_t other = NumberSlots::number_of(seen);
+      if ((is_new || i < other) && !slot.compare_exchange_strong(seen, NumberSlots::slot_of(tag, i),
+                                                                 std::memory_order_relaxed))
+        continue;  // another thread was faster
+      if (is_new) return;
+      duplicates.insert(std::max(i, other));
       any.store(true, std::memory_order_relaxed);
       return;
     }

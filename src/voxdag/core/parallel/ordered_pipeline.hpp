@@ -8,20 +8,20 @@
 #include <vector>
 
 #include "voxdag/core/parallel/loop_order.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
 /// Calls use(make(i)) for every i in [0, count): `make` on many threads at the same time, `use` in
 /// the order of i and never twice at the same time. At most `most_waiting` results exist at a time.
-/// If `make` or `use` throws, the results that wait are destroyed and the exception leaves.
-/// Throws Cancelled if `progress` is cancelled.
+/// If `make` or `use` throws, the results that wait are destroyed and the exception leaves. Throws
+/// Cancelled.
 ///
 /// This function owns the results itself: tbb::parallel_pipeline leaks its tokens if a filter
 /// throws.
 template <class Make, class Use>
-void ordered_pipeline(std::size_t count, std::size_t most_waiting, Progress* progress,
-                      const Make& make, const Use& use) {
+void ordered_pipeline(std::size_t count, std::size_t most_waiting, Work work, const Make& make,
+                      const Use& use) {
   using Result = std::invoke_result_t<const Make&, std::size_t>;
   std::vector<std::optional<Result>> results(most_waiting);
   LoopOrder order;
@@ -30,7 +30,7 @@ void ordered_pipeline(std::size_t count, std::size_t most_waiting, Progress* pro
   const auto take = [&](tbb::flow_control& flow) {
     const LoopOrder::Items items(order);
     const OrderPoint::Step step(taken);
-    if (next == count || (progress != nullptr && progress->cancelled())) flow.stop();
+    if (next == count || work.cancelled()) flow.stop();
     return next++;
   };
   // The results that wait are those of a range of at most most_waiting indices, because `use_one`
@@ -52,7 +52,7 @@ void ordered_pipeline(std::size_t count, std::size_t most_waiting, Progress* pro
       tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, take) &
           tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel, make_one) &
           tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order, use_one));
-  if (progress != nullptr) progress->throw_if_cancelled();
+  work.poll();
 }
 
 }  // namespace voxdag

@@ -10,14 +10,14 @@
 
 namespace voxdag {
 
-/// Sorts [begin, end) on the threads of the current TBB arena. Polls `progress`, which may be null,
-/// at each comparison: nothing else happens often enough while sorting. Throws Cancelled; the order
-/// is then unspecified. Builds with ThreadSanitizer sort on one thread. ThreadSanitizer does not
-/// see the order of TBB's tasks, and would spend minutes on false reports for the entries.
+/// Sorts [begin, end) on the threads of the current TBB arena. Polls `work` at each comparison:
+/// nothing else happens often enough while sorting. Throws Cancelled; the order is then
+/// unspecified. Builds with ThreadSanitizer sort on one thread. ThreadSanitizer does not see the
+/// order of TBB's tasks, and would spend minutes on false reports for the entries.
 template <class Iterator, class Less = std::less<>>
-void polled_sort(Iterator begin, Iterator end, const Progress* progress, const Less& less = {}) {
-  const auto polled_less = [progress, &less](const auto& a, const auto& b) {
-    poll(progress);
+void polled_sort(Iterator begin, Iterator end, Work work, const Less& less = {}) {
+  const auto polled_less = [work, &less](const auto& a, const auto& b) {
+    work.poll();
     return less(a, b);
   };
 #ifdef VOXDAG_TSAN

@@ -9,8 +9,7 @@
 
 namespace voxdag {
 
-/// Long operations take a pointer to it; null means no reports and no cancellation. Any thread may
-/// report, but only one at a time.
+/// Long operations take it in a Work. Any thread may report, but only one at a time.
 class Progress {
  public:
   /// Callback. `fraction` (0 to 1) of `stage` is done; `items` counts the results of the stage

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "voxdag/core/large_array.hpp"
+#include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
 
 namespace voxdag {

@@ -12,10 +12,10 @@ namespace voxdag {
 namespace {
 
 /// Returns the boxes of all shared bricks.
-std::vector<CellBox> boxes_of_bricks(const CompactSvdagView& compact, Progress* progress) {
+std::vector<CellBox> boxes_of_bricks(const CompactSvdagView& compact, Work work) {
   const int level = compact.coded_levels() - 3;
   std::vector<CellBox> boxes(compact.shared_nodes(level));
-  polled_for(boxes.size(), 1024, progress, "open", [&](std::size_t i) {
+  polled_for(boxes.size(), 1024, work, "open", [&](std::size_t i) {
     const std::uint64_t* first = compact.brick_first;
     const auto mask =
         static_cast<std::uint32_t>(std::upper_bound(first, first + 257, i) - first - 1);
@@ -30,10 +30,10 @@ std::vector<CellBox> boxes_of_bricks(const CompactSvdagView& compact, Progress* 
 
 /// Returns the boxes of all units.
 std::vector<CellBox> boxes_of_units(const CompactSvdagView& compact,
-                                    const CountedVector<CompactRange>& units, Progress* progress) {
-  const std::vector<CellBox> bricks = boxes_of_bricks(compact, progress);
+                                    const CountedVector<CompactRange>& units, Work work) {
+  const std::vector<CellBox> bricks = boxes_of_bricks(compact, work);
   std::vector<CellBox> boxes(units.size());
-  polled_for(units.size(), 1024, progress, "open", [&](std::size_t i) {
+  polled_for(units.size(), 1024, work, "open", [&](std::size_t i) {
     CompactUnit unit;
     if (read_unit(compact, units[i], unit) != CompactFault::kNone) fail_broken_stream();
     CellExtent extent;
@@ -49,13 +49,12 @@ std::vector<CellBox> boxes_of_units(const CompactSvdagView& compact,
 
 }  // namespace
 
-InPlaceDag::InPlaceDag(const CompactSvdagView& compact, std::size_t cached_units,
-                       Progress* progress)
+InPlaceDag::InPlaceDag(const CompactSvdagView& compact, std::size_t cached_units, Work work)
     : compact_(compact), top_(std::make_shared<Top>(cached_units)) {
   assert(compact.levels >= 4);
   if (compact.is_empty()) return;
-  const CompactTop top = expand_top(compact, nullptr, [=] { poll(progress); });
-  const std::vector<CellBox> unit_boxes = boxes_of_units(compact, top.units, progress);
+  const CompactTop top = expand_top(compact, work);
+  const std::vector<CellBox> unit_boxes = boxes_of_units(compact, top.units, work);
   top_->units.reserve(top.units.size());
   for (const CompactRange range : top.units) {
     if (range.end - range.begin > kMaxLength || range.begin >> (64 - kLengthBits) != 0)

@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/cpu/packets/unit_cache.hpp"
 #include "voxdag/stored/compact/compact_svdag.hpp"
 
@@ -22,9 +22,9 @@ class InPlaceDag {
   /// Expands the nodes above the units, and decodes every unit once, for its box, on the threads of
   /// the current TBB arena. The DAG must have four levels or more. `cached_units` is the number of
   /// units that each thread keeps: a power of two. Throws Error if the stream is broken, and
-  /// Cancelled; `progress` may be null.
+  /// Cancelled.
   explicit InPlaceDag(const CompactSvdagView& compact, std::size_t cached_units = kCachedUnits,
-                      Progress* progress = nullptr);
+                      Work work = {});
 
   static constexpr std::size_t kCachedUnits = 2048;  ///< The default of `cached_units`.
 

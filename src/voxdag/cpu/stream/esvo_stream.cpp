@@ -102,9 +102,8 @@ std::uint64_t EsvoStream::most_slots_of_a_path() const {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     std::uint64_t slots = 0;
     int blocks = 0;
-    for (auto at = static_cast<std::int64_t>(i); at >= 0;
-         at = blocks_[static_cast<std::size_t>(at)].parent) {
-      slots += directory_[static_cast<std::size_t>(at)].slots;
+    for (auto at = static_cast<std::int64_t>(i); at >= 0; at = blocks_[at].parent) {
+      slots += directory_[at].slots;
       if (++blocks > kMaxLevels) fail(ErrorPlace::block(i), "has too many ancestor blocks");
     }
     most = std::max(most, slots);
@@ -155,7 +154,7 @@ void EsvoStream::mark(std::uint64_t slot, bool is_cut) {
 
 void EsvoStream::cut(std::size_t block) {
   Block& b = blocks_[block];
-  Block& parent = blocks_[static_cast<std::size_t>(b.parent)];
+  Block& parent = blocks_[b.parent];
   const std::uint64_t slot = parent.position + b.parent_slot;
   ChildDescriptor descriptor = ChildDescriptor::from_slot(pool_[slot]);
   b.descriptor = descriptor.children;
@@ -168,7 +167,7 @@ void EsvoStream::cut(std::size_t block) {
 
 void EsvoStream::attach(std::size_t block, std::uint32_t first_descriptor) {
   const Block& b = blocks_[block];
-  Block& parent = blocks_[static_cast<std::size_t>(b.parent)];
+  Block& parent = blocks_[b.parent];
   const std::uint64_t slot = parent.position + b.parent_slot;
   ChildDescriptor descriptor = ChildDescriptor::from_slot(pool_[slot]);
   descriptor.children = b.descriptor;
@@ -215,7 +214,7 @@ void EsvoStream::load(std::size_t block) {
   for (const std::uint32_t child : b.children) cut(child);
   if (b.parent >= 0) {
     attach(block, view().info(position).first_descriptor);
-    ++blocks_[static_cast<std::size_t>(b.parent)].loaded_children;
+    ++blocks_[b.parent].loaded_children;
   }
   ++counts_.blocks_loaded;
   counts_.blocks_used += b.was_loaded ? 0 : 1;
@@ -244,7 +243,7 @@ void EsvoStream::evict(std::size_t block) {
   for (const std::uint32_t child : b.children) mark(b.position + blocks_[child].parent_slot, false);
   // cut() keeps the position of the far pointer in the descriptor, and attach() needs nothing else.
   cut(block);
-  --blocks_[static_cast<std::size_t>(b.parent)].loaded_children;
+  --blocks_[b.parent].loaded_children;
   release(b.position, directory_[block].slots);
   b.position = kNowhere;
   --counts_.blocks_loaded;

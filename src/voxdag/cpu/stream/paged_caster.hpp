@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/cpu/stream/streamed_image.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
 
@@ -48,9 +48,7 @@ bool cast(const PagedNodes& nodes, const GridRay& ray, const Stop& stop, EsvoHit
 /// in the order in which blocks are loaded.
 class PagedCaster {
  public:
-  /// `progress` may be null; it can cancel the work.
-  PagedCaster(const PagedNodes& nodes, const Progress* progress)
-      : nodes_(nodes), progress_(progress) {}
+  PagedCaster(const PagedNodes& nodes, Work work) : nodes_(nodes), work_(work) {}
 
   int levels() const { return nodes_.levels(); }
 
@@ -73,10 +71,10 @@ class PagedCaster {
       float t_min;  ///< The ray's original t_min.
     };
     std::vector<Rest> rays;
-    rays.reserve(static_cast<std::size_t>(count));
+    rays.reserve(count);
     std::map<std::int64_t, std::vector<int>> waiting;  // rays that wait for each block
     const auto go_on = [&](int i) {
-      Rest& rest = rays[static_cast<std::size_t>(i)];
+      Rest& rest = rays[i];
       GridRay& ray = rest.cast.ray;
       EsvoHit hit;
       const bool is_hit = cast(static_cast<const ContourNodes&>(nodes_), ray, rest.cast.stop, hit);
@@ -95,7 +93,7 @@ class PagedCaster {
     }
     for (int i = 0; i < count; ++i) go_on(i);
     while (!waiting.empty()) {
-      if (progress_ != nullptr) progress_->throw_if_cancelled();
+      work_.poll();
       const auto longest = std::max_element(
           waiting.begin(), waiting.end(),
           [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
@@ -107,7 +105,7 @@ class PagedCaster {
   }
 
   PagedNodes nodes_;
-  const Progress* progress_;
+  Work work_;
 };
 
 }  // namespace voxdag

@@ -23,32 +23,42 @@ class PagedCells {
   Node root() const { return {}; }
 
   std::uint32_t child_mask(const Node& node, int level) const {
-    return node.is_full ? 0xFFu : descriptor(node, level, false).valid_mask();
+    return node.is_full ? 0xFFu : descriptor_at(find(node.cell, level)).valid_mask();
   }
   Node child(const Node& node, int level, int index) const {
-    return {node.cell * 2 + child_offset(index),
-            node.is_full || (descriptor(node, level, true).leaf_mask() >> index & 1u) != 0};
+    const bool is_full = node.is_full || is_leaf(node.cell, level, index);
+    return {node.cell * 2 + child_offset(index), is_full};
   }
 
  private:
-  /// Returns the descriptor of a node that is not full. If the block of its children is missing,
-  /// the descriptor marks all children as leaves, unless `with_children` loads the block.
-  ChildDescriptor descriptor(const Node& node, int level, bool with_children) const {
+  /// Returns the slot of a cell that is a node. Loads the blocks on the way to it.
+  std::uint64_t find(Vec3i cell, int level) const {
     std::uint64_t slot = source_->view().root;
-    for (int l = 0;;) {
-      const std::int64_t block = source_->loaded().missing_block(slot);
-      if (block >= 0 && (l < level || with_children)) {
-        source_->load(static_cast<std::size_t>(block));
-        slot = source_->view().root;
-        l = 0;
-        continue;
-      }
-      const EsvoView esvo = source_->view();
-      const ChildDescriptor descriptor = esvo.descriptor(slot);
-      if (l == level) return descriptor;
-      ++l;
-      slot = esvo.child(slot, descriptor, child_index(node.cell, level - l));
+    for (int l = 1; l <= level; ++l) {
+      if (load_children(slot)) return find(cell, level);  // All slots may have moved.
+      slot = source_->view().child(slot, descriptor_at(slot), child_index(cell, level - l));
     }
+    return slot;
+  }
+
+  /// Returns whether a child of a node is a leaf. Loads its block if it is not: without the block,
+  /// the node's descriptor marks all its children as leaves.
+  bool is_leaf(Vec3i cell, int level, int index) const {
+    std::uint64_t slot;
+    do slot = find(cell, level);
+    while (load_children(slot));
+    return (descriptor_at(slot).leaf_mask() >> index & 1u) != 0;
+  }
+
+  /// Loads the block of the children of the node in a slot. Returns false if it was loaded already.
+  bool load_children(std::uint64_t slot) const {
+    const std::int64_t block = source_->loaded().missing_block(slot);
+    if (block >= 0) source_->load(static_cast<std::size_t>(block));
+    return block >= 0;
+  }
+
+  ChildDescriptor descriptor_at(std::uint64_t slot) const {
+    return source_->view().descriptor(slot);
   }
 
   BlockSource* source_;

@@ -50,7 +50,7 @@ bool StreamBlocks::make_room(std::size_t block) {
 void StreamBlocks::mark_above(std::size_t block) {
   for (std::int64_t above = stream_.parent(block); above >= 0;
        above = stream_.parent(static_cast<std::size_t>(above)))
-    loaded_in_[static_cast<std::size_t>(above)] = part_;
+    loaded_in_[above] = part_;
 }
 
 void StreamBlocks::evict_all() {

@@ -33,8 +33,8 @@ class TileListener : public LeafListener {
 /// Renders tiles on the CPU's threads.
 class CpuTiles : public StreamedTiles {
  public:
-  CpuTiles(BlockSource& source, RenderPlan& plan, const RenderOptions& options, Progress* progress)
-      : source_(source), plan_(plan), options_(options), progress_(progress) {}
+  CpuTiles(BlockSource& source, RenderPlan& plan, const RenderOptions& options, Work work)
+      : source_(source), plan_(plan), options_(options), work_(work) {}
 
   std::vector<ViewTile> all() const override {
     return make_tiles(options_.width, options_.height, options_.tile_size);
@@ -49,17 +49,16 @@ class CpuTiles : public StreamedTiles {
     std::vector<char> has_missed(tiles.size());
     std::atomic<std::size_t> done{0};
     parallel_for(tiles.size(), [&](std::size_t at) {
-      if (progress_ != nullptr && progress_->cancelled()) return;
+      if (work_.cancelled()) return;
       const TileListener listener(source_);
       const StreamedNodes nodes(source_.view(), listener);
       rays_ += renderer_->render_one(nodes, PacketCaster(nodes), tiles[at]);
       has_missed[at] = listener.has_missed() ? 1 : 0;
       const std::size_t so_far = done.fetch_add(1) + 1;
-      if (progress_ != nullptr && stage != nullptr)
-        progress_->report(stage, static_cast<double>(so_far) / static_cast<double>(tiles.size()),
-                          rays_);
+      if (stage != nullptr)
+        work_.report(stage, static_cast<double>(so_far) / static_cast<double>(tiles.size()), rays_);
     });
-    if (progress_ != nullptr) progress_->throw_if_cancelled();
+    work_.poll();
     std::vector<ViewTile> missed;
     for (std::size_t i = 0; i < tiles.size(); ++i)
       if (has_missed[i] != 0) missed.push_back(tiles[i]);
@@ -80,10 +79,8 @@ class CpuTiles : public StreamedTiles {
       } while (source_.load_missing(eye) > 0 && !part.empty());
       const PagedNodes nodes(source_);
       for (const ViewTile& tile : part)
-        rays_ += renderer_->render_one(nodes, PagedCaster(nodes, progress_), tile);
-      if (progress_ != nullptr)
-        progress_->report("stream", static_cast<double>(begin) / static_cast<double>(tiles.size()),
-                          rays_);
+        rays_ += renderer_->render_one(nodes, PagedCaster(nodes, work_), tile);
+      work_.report("stream", static_cast<double>(begin) / static_cast<double>(tiles.size()), rays_);
     }
   }
 
@@ -101,7 +98,7 @@ class CpuTiles : public StreamedTiles {
   BlockSource& source_;
   RenderPlan& plan_;
   const RenderOptions& options_;
-  Progress* progress_;
+  Work work_;
   std::optional<Renderer> renderer_;
   std::atomic<std::uint64_t> rays_{0};
 };
@@ -109,10 +106,9 @@ class CpuTiles : public StreamedTiles {
 }  // namespace
 
 RenderedImage render_streamed(BlockSource& source, const Grid& grid, const RenderOptions& options,
-                              const std::function<void(const RenderedImage&)>& on_pass,
-                              Progress* progress) {
+                              const std::function<void(const RenderedImage&)>& on_pass, Work work) {
   RenderPlan plan(source.view(), grid, options);
-  CpuTiles tiles(source, plan, options, progress);
+  CpuTiles tiles(source, plan, options, work);
   return render_passes(source, tiles, plan, options, on_pass);
 }
 

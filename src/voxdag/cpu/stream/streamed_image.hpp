@@ -2,6 +2,7 @@
 /// Renders a picture of an ESVO, and loads blocks as rays need them.
 #include <functional>
 
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cpu/stream/streamed_nodes.hpp"
 
@@ -44,6 +45,6 @@ class BlockSource {
 /// the last. Throws like render_image and like the source.
 RenderedImage render_streamed(BlockSource& source, const Grid& grid, const RenderOptions& options,
                               const std::function<void(const RenderedImage&)>& on_pass = {},
-                              Progress* progress = nullptr);
+                              Work work = {});
 
 }  // namespace voxdag

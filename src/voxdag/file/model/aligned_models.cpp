@@ -5,9 +5,8 @@
 
 namespace voxdag {
 
-AlignedModels::AlignedModels(const DagModel& first, const DagModel& second, MemoryBudget* memory,
-                             Progress* progress)
-    : first_(first), memory_(memory), progress_(progress) {
+AlignedModels::AlignedModels(const DagModel& first, const DagModel& second, Work work)
+    : first_(first), work_(work) {
   const AlignedGrids aligned = align_grids(first.grid(), second.grid());
   grid_ = aligned.grid;
   place_ = aligned.first;
@@ -17,12 +16,12 @@ AlignedModels::AlignedModels(const DagModel& first, const DagModel& second, Memo
 
 SvdagView AlignedModels::moved(const DagModel& model, Vec3i by, Svdag& storage) const {
   if (by == Vec3i{} && model.grid().levels == grid_.levels) return model.view();
-  storage = shift(model.view(), by, grid_.levels, memory_, progress_);
+  storage = shift(model.view(), by, grid_.levels, work_);
   return storage.view();
 }
 
 Svdag AlignedModels::combine(SetOperation operation) const {
-  return voxdag::combine(dag_a_, dag_b_, operation, memory_, progress_);
+  return voxdag::combine(dag_a_, dag_b_, operation, work_);
 }
 
 const Grid& AlignedModels::grid_of(SetOperation operation) const {
@@ -36,7 +35,7 @@ Svdag AlignedModels::result(SetOperation operation) const {
   const Grid& grid = grid_of(operation);
   if (grid == grid_) return dag;
   const Vec3i back{-place_.x, -place_.y, -place_.z};
-  return shift(dag.view(), back, grid.levels, memory_, progress_);
+  return shift(dag.view(), back, grid.levels, work_);
 }
 
 }  // namespace voxdag

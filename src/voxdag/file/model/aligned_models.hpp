@@ -1,17 +1,17 @@
 #pragma once
 /// Set operations on models whose grids may differ.
 #include "voxdag/algebra/combine.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/file/model/dag_model.hpp"
 
 namespace voxdag {
 
-/// Two models in a common grid. Refers to both; `memory` and `progress` may be null.
+/// Two models in a common grid. Refers to both.
 class AlignedModels {
  public:
   /// Throws Error with the reason if no grid holds both (align_grids.hpp), OverMemory and
   /// Cancelled.
-  AlignedModels(const DagModel& first, const DagModel& second, MemoryBudget* memory,
-                Progress* progress);
+  AlignedModels(const DagModel& first, const DagModel& second, Work work);
   AlignedModels(const AlignedModels&) = delete;
   AlignedModels& operator=(const AlignedModels&) = delete;
 
@@ -30,8 +30,7 @@ class AlignedModels {
   SvdagView moved(const DagModel& model, Vec3i by, Svdag& storage) const;
 
   const DagModel& first_;
-  MemoryBudget* memory_;
-  Progress* progress_;
+  Work work_;
   Grid grid_;
   Vec3i place_;  ///< Voxel (0,0,0) of the first model in the common grid.
   Svdag moved_a_, moved_b_;

@@ -15,16 +15,15 @@
 
 namespace voxdag {
 
-DagModel::Decoded DagModel::decode(CompactFile file, const std::string& path, Progress* progress,
-                                   MemoryBudget* memory) {
+DagModel::Decoded DagModel::decode(CompactFile file, const std::string& path, Work work) {
   Decoded decoded;
   const CompactContents& contents = file.contents();
   with_file_name(path, [&] {
-    decoded.dag = decode_svdag(file.view(), memory, progress);
+    decoded.dag = decode_svdag(file.view(), work);
     if (contents.has_attributes()) {
-      const MemoryReservation dag_bytes(memory, decoded.view().bytes());
+      const MemoryReservation dag_bytes(work.memory, decoded.view().bytes());
       decoded.index =
-          build_cell_index(decoded.view(), contents.metadata.attributes.level(), memory);
+          build_cell_index(decoded.view(), contents.metadata.attributes.level(), work.memory);
       decoded.stored = contents.attributes(decoded.index.view(), decoded.expanded);
     }
   });
@@ -32,11 +31,11 @@ DagModel::Decoded DagModel::decode(CompactFile file, const std::string& path, Pr
   return decoded;
 }
 
-DagModel::DagModel(VdagContainer file, Progress* progress, MemoryBudget* memory)
+DagModel::DagModel(VdagContainer file, Work work)
     : dag_(Decoded()), file_bytes_(file.bytes().size()) {
   const bool is_compact = file.kind() == VdagKind::kCompact;
   const std::uint64_t expanded_bytes = wire_bytes_of(file).expanded;
-  memory_ = MemoryReservation(memory, expanded_bytes);
+  memory_ = MemoryReservation(work.memory, expanded_bytes);
   if (!is_compact) {
     VdagFile plain(std::move(file));
     metadata_ = plain.metadata();
@@ -46,24 +45,23 @@ DagModel::DagModel(VdagContainer file, Progress* progress, MemoryBudget* memory)
   const std::string path = file.path().string();
   CompactFile compact(std::move(file));
   metadata_ = compact.metadata();
-  Decoded decoded = decode(std::move(compact), path, progress, memory);
+  Decoded decoded = decode(std::move(compact), path, work);
   memory_ = {};
   memory_ = MemoryReservation(
-      memory, decoded.view().bytes() + decoded.index.view().bytes() + expanded_bytes);
+      work.memory, decoded.view().bytes() + decoded.index.view().bytes() + expanded_bytes);
   dag_ = std::move(decoded);
 }
 
-DagModel::DagModel(Svdag dag, DagAttributes attributes, VdagMetadata metadata, MemoryBudget* memory)
+DagModel::DagModel(Svdag dag, DagAttributes attributes, VdagMetadata metadata, Work work)
     : dag_(Made{std::move(dag), std::move(attributes)}), metadata_(std::move(metadata)) {
-  memory_ = MemoryReservation(memory, view().bytes() + std::get<Made>(dag_).stored.bytes());
+  memory_ = MemoryReservation(work.memory, view().bytes() + std::get<Made>(dag_).stored.bytes());
   metadata_.counts = count_svdag(view());
   metadata_.program = written_by();
 }
 
-void DagModel::save(const std::filesystem::path& path, bool compact, Progress* progress,
-                    MemoryBudget* memory) const {
+void DagModel::save(const std::filesystem::path& path, bool compact, Work work) const {
   if (compact)
-    write_vdag(path, encode_svdag(view(), {.memory = memory}, progress), metadata_, attributes());
+    write_vdag(path, encode_svdag(view(), {}, work), metadata_, attributes());
   else
     write_vdag(path, view(), metadata_, attributes());
 }
@@ -79,9 +77,9 @@ DagAttributesView DagModel::attributes() const {
   return view;
 }
 
-void DagModel::show_materials(const std::filesystem::path& path, Progress* progress) {
+void DagModel::show_materials(const std::filesystem::path& path, Work work) {
   if (!attributes().has_materials()) fail_without_materials(path);
-  material_colors_ = material_colors(attributes().materials, progress);
+  material_colors_ = material_colors(attributes().materials, work);
 }
 
 }  // namespace voxdag

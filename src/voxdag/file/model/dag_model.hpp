@@ -4,8 +4,7 @@
 #include <optional>
 #include <variant>
 
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
 #include "voxdag/stored/attributes/dag_attributes.hpp"
@@ -16,22 +15,20 @@ namespace voxdag {
 /// and the metadata. Move-only; views stay valid when it is moved.
 class DagModel {
  public:
-  /// Reads the file; decodes it if it has the compact form. `memory`, which may be null, counts
-  /// what it holds. Throws Error(path, place, reason), OverMemory and Cancelled.
-  DagModel(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory = nullptr)
-      : DagModel(VdagContainer(path, memory), progress, memory) {}
-  /// Reads an open file in the same way. `memory` does not count the bytes of `file` again.
-  DagModel(VdagContainer file, Progress* progress, MemoryBudget* memory = nullptr);
+  /// Reads the file; decodes it if it has the compact form. `work` counts what it holds. Throws
+  /// Error(path, place, reason), OverMemory and Cancelled.
+  explicit DagModel(const std::filesystem::path& path, Work work = {})
+      : DagModel(VdagContainer(path, work.memory), work) {}
+  /// Reads an open file in the same way. `work` does not count the bytes of `file` again.
+  explicit DagModel(VdagContainer file, Work work = {});
 
   /// Holds a DAG and the attributes of its cells, which may be empty. metadata.grid.levels must
-  /// equal dag.levels. Sets metadata.counts and metadata.program. `memory`, which may be null,
-  /// counts them. Throws OverMemory.
-  DagModel(Svdag dag, DagAttributes attributes, VdagMetadata metadata,
-           MemoryBudget* memory = nullptr);
+  /// equal dag.levels. Sets metadata.counts and metadata.program. `work` counts them. Throws
+  /// OverMemory.
+  DagModel(Svdag dag, DagAttributes attributes, VdagMetadata metadata, Work work = {});
 
   /// Writes the file; `compact` chooses the compact form. Throws Error, OverMemory and Cancelled.
-  void save(const std::filesystem::path& path, bool compact, Progress* progress = nullptr,
-            MemoryBudget* memory = nullptr) const;
+  void save(const std::filesystem::path& path, bool compact, Work work = {}) const;
 
   SvdagView view() const;
   /// Returns the attributes of the DAG's cells; empty if the file has none.
@@ -40,7 +37,7 @@ class DagModel {
   const Grid& grid() const { return metadata_.grid; }
   std::uint64_t file_bytes() const { return file_bytes_; }
   /// Replaces the colours by one for each material. Throws Error if the file has no material ids.
-  void show_materials(const std::filesystem::path& path, Progress* progress);
+  void show_materials(const std::filesystem::path& path, Work work);
   /// Returns whether the file has the compact form.
   bool is_compact() const { return std::holds_alternative<Decoded>(dag_); }
 
@@ -64,8 +61,7 @@ class DagModel {
     SvdagView view() const { return dag.view(); }
     DagAttributesView attributes() const { return stored.view(); }
   };
-  static Decoded decode(CompactFile file, const std::string& path, Progress* progress,
-                        MemoryBudget* memory);
+  static Decoded decode(CompactFile file, const std::string& path, Work work);
 
   std::variant<VdagFile, Decoded, Made> dag_;
   std::optional<ValuePages> material_colors_;  ///< After show_materials().

@@ -5,13 +5,13 @@
 namespace voxdag {
 
 DagModel edited(const VdagMetadata& source, Svdag dag, const Grid& grid, const std::string& edit,
-                MemoryBudget* memory) {
+                Work work) {
   VdagMetadata metadata = source;
   metadata.grid = grid;
   metadata.attributes = {};
   std::string& edits = metadata.build["edits"];
   edits += (edits.empty() ? "" : "; ") + edit;
-  return {std::move(dag), {}, std::move(metadata), memory};
+  return {std::move(dag), {}, std::move(metadata), work};
 }
 
 }  // namespace voxdag

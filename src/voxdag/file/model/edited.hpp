@@ -10,10 +10,10 @@ namespace voxdag {
 /// Returns a model of `dag` in `grid`, without attributes. The metadata are `source`;
 /// their entry "edits" gets `edit`, which says how the voxels were made. Throws OverMemory.
 DagModel edited(const VdagMetadata& source, Svdag dag, const Grid& grid, const std::string& edit,
-                MemoryBudget* memory = nullptr);
+                Work work = {});
 inline DagModel edited(const DagModel& source, Svdag dag, const Grid& grid, const std::string& edit,
-                       MemoryBudget* memory = nullptr) {
-  return edited(source.metadata(), std::move(dag), grid, edit, memory);
+                       Work work = {}) {
+  return edited(source.metadata(), std::move(dag), grid, edit, work);
 }
 
 }  // namespace voxdag

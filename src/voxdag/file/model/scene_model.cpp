@@ -7,15 +7,14 @@
 namespace voxdag {
 namespace {
 
-std::variant<DagModel, EsvoFile> open(VdagContainer file, Progress* progress) {
+std::variant<DagModel, EsvoFile> open(VdagContainer file, Work work) {
   if (file.kind() == VdagKind::kEsvo) return EsvoFile(std::move(file));
-  return DagModel(std::move(file), progress);
+  return DagModel(std::move(file), work);
 }
 
 }  // namespace
 
-SceneModel::SceneModel(VdagContainer file, Progress* progress)
-    : scene_(open(std::move(file), progress)) {}
+SceneModel::SceneModel(VdagContainer file, Work work) : scene_(open(std::move(file), work)) {}
 
 VoxelSet SceneModel::voxels() const {
   return std::visit([](const auto& file) { return VoxelSet(file.view()); }, scene_);
@@ -26,10 +25,10 @@ ColoredDagView SceneModel::colored_dag() const {
   return dag == nullptr ? ColoredDagView{} : ColoredDagView{dag->view(), dag->attributes()};
 }
 
-void SceneModel::show_materials(const std::filesystem::path& path, Progress* progress) {
+void SceneModel::show_materials(const std::filesystem::path& path, Work work) {
   DagModel* const dag = std::get_if<DagModel>(&scene_);
   if (dag == nullptr) fail_without_materials(path);
-  dag->show_materials(path, progress);
+  dag->show_materials(path, work);
 }
 
 const SceneMetadata& SceneModel::metadata() const {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <variant>
 
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/model/dag_model.hpp"
 #include "voxdag/stored/attributes/look.hpp"
@@ -14,9 +15,9 @@ namespace voxdag {
 class SceneModel {
  public:
   /// Reads a DAG like DagModel, or an ESVO.
-  SceneModel(const std::filesystem::path& path, Progress* progress)
-      : SceneModel(VdagContainer(path), progress) {}
-  SceneModel(VdagContainer file, Progress* progress);
+  explicit SceneModel(const std::filesystem::path& path, Work work = {})
+      : SceneModel(VdagContainer(path, work.memory), work) {}
+  explicit SceneModel(VdagContainer file, Work work = {});
 
   VoxelSet voxels() const;
   /// Returns the DAG with its attributes; empty for an ESVO and a file without attributes.
@@ -24,7 +25,7 @@ class SceneModel {
   const SceneMetadata& metadata() const;
   const Grid& grid() const { return metadata().grid; }
   /// Calls DagModel::show_materials(). Throws Error for an ESVO, which has no material ids.
-  void show_materials(const std::filesystem::path& path, Progress* progress);
+  void show_materials(const std::filesystem::path& path, Work work = {});
 
  private:
   std::variant<DagModel, EsvoFile> scene_;

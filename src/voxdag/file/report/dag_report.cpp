@@ -74,32 +74,33 @@ Json attributes_json(const AttributesMetadata& metadata, const AttributeSizes& s
   return json;
 }
 
+std::string color_error(const AttributesMetadata& metadata, std::uint64_t cells) {
+  const auto& errors = metadata.colors->errors;
+  if (!errors) return "";
+  if (*errors == 0) return ", lossless";
+  return fmt::format(", PSNR {:.1f} dB", metadata.color_psnr_db(cells));
+}
+
+std::string normal_error(const AttributesMetadata& metadata, std::uint64_t cells) {
+  if (!metadata.normals->errors) return "";
+  return fmt::format(", mean error {:.2f}°", metadata.normal_mean_degrees(cells));
+}
+
 /// Returns lines that describe the attributes; an empty text if there are none.
 std::string attributes_table(const AttributesMetadata& metadata, const AttributeSizes& sizes) {
   if (metadata.resolution == 0) return "";
-  std::string text = fmt::format(
-      "\n  {:<14}{} of {}³ and coarser, index {}\n", "cells", with_commas(sizes.cells),
-      with_commas(static_cast<std::uint64_t>(metadata.resolution)), human_bytes(sizes.index_bytes));
-  const auto add = [&](const char* name, std::uint64_t bytes, const std::string& error) {
-    text += fmt::format("  {:<14}{}, {:.3f} bits/cell{}\n", name, human_bytes(bytes),
-                        bits_per_cell(bytes, sizes), error);
+  std::string text =
+      fmt::format("\n  {:<14}{} of {}³ and coarser, index {}\n", "cells", with_commas(sizes.cells),
+                  with_commas(metadata.resolution), human_bytes(sizes.index_bytes));
+  const auto add = [&](const char* name, std::uint64_t bytes, const std::string& more) {
+    text += fmt::format("  {:<14}{}, {:.3f} bits/cell{}{}\n", name, human_bytes(bytes),
+                        bits_per_cell(bytes, sizes), sizes.is_wire ? ", wire form" : "", more);
   };
-  const std::string form = sizes.is_wire ? ", wire form" : "";
-  if (metadata.colors)
-    add("colours", sizes.color_bytes,
-        form + (!metadata.colors->errors ? ""
-                : *metadata.colors->errors == 0
-                    ? ", lossless"
-                    : fmt::format(", PSNR {:.1f} dB", metadata.color_psnr_db(sizes.cells))));
-  if (metadata.normals)
-    add("normals", sizes.normal_bytes,
-        form +
-            (!metadata.normals->errors
-                 ? ""
-                 : fmt::format(", mean error {:.2f}°", metadata.normal_mean_degrees(sizes.cells))));
+  if (metadata.colors) add("colours", sizes.color_bytes, color_error(metadata, sizes.cells));
+  if (metadata.normals) add("normals", sizes.normal_bytes, normal_error(metadata, sizes.cells));
   if (metadata.materials)
     add("material ids", sizes.material_bytes,
-        form + fmt::format(", {} materials", with_commas(metadata.materials->size())));
+        fmt::format(", {} materials", with_commas(metadata.materials->size())));
   return text;
 }
 
@@ -178,8 +179,7 @@ std::string placement_table(const Grid& grid, const VdagSource& source) {
       "  {:<14}{}, {}\n"
       "  {:<14}{}³ voxels of {:.6g}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n",
       is_mesh ? "mesh" : "source", printable(source.name), items, "grid",
-      with_commas(static_cast<std::uint64_t>(grid.resolution())), grid.voxel_size, lo.x, lo.y, lo.z,
-      hi.x, hi.y, hi.z);
+      with_commas(grid.resolution()), grid.voxel_size, lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
 }
 
 std::string dag_table(const DagReport& report) {

@@ -30,12 +30,12 @@ class BitPlane {
   std::size_t words_per_row() const { return words_per_row_; }
 
   /// Returns whether a row may have bits: false only if it has none.
-  bool has_bits(std::int32_t row) const { return has_bits_[static_cast<std::size_t>(row)] != 0; }
+  bool has_bits(std::int32_t row) const { return has_bits_[row] != 0; }
   std::span<const std::uint64_t> row(std::int32_t row) const {
     return {words_.data() + static_cast<std::size_t>(row) * words_per_row_, words_per_row_};
   }
   void set(std::int32_t row, std::int32_t column) {
-    has_bits_[static_cast<std::size_t>(row)] = 1;
+    has_bits_[row] = 1;
     words_[static_cast<std::size_t>(row) * words_per_row_ +
            static_cast<std::size_t>(column) / 64] |= std::uint64_t{1} << (column & 63);
   }
@@ -98,25 +98,30 @@ void for_each_plane(const VoxelSet& voxels, const Box3i& box, PlaneAxes axes, co
       for (; mask != 0; mask &= mask - 1) {
         const Vec3i voxel =
             origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
-        planes[static_cast<std::size_t>(voxel[axes.plane] - begin)].set(
-            voxel[axes.row] - box.lo[axes.row], voxel[axes.column] - box.lo[axes.column]);
+        planes[voxel[axes.plane] - begin].set(voxel[axes.row] - box.lo[axes.row],
+                                              voxel[axes.column] - box.lo[axes.column]);
       }
     });
     const BitPlane* before = begin == box.lo[axes.plane] ? nullptr : &last;
     const BitPlane* plane = planes.data();
     for (; begin < slab.hi[axes.plane]; before = plane++) fn(begin++, *plane, before);
-    std::swap(last, planes[static_cast<std::size_t>(before - planes.data())]);
+    std::swap(last, planes[before - planes.data()]);
   }
 }
 
-/// Calls fn(part) for the parts of a box whose planes for_each_plane() can hold in `most_bytes`:
+/// Returns how many rows of a plane for_each_plane() can hold in `max_bytes`, at least 1.
+inline std::int32_t rows_in(std::uint64_t max_bytes, const Box3i& box, PlaneAxes axes) {
+  const std::uint64_t columns = box.hi[axes.column] - box.lo[axes.column];
+  const std::uint64_t row_bytes = 6 * (((columns + 63) / 64) * 8 + 1);
+  return static_cast<std::int32_t>(
+      std::clamp<std::uint64_t>(max_bytes / row_bytes, 1, std::uint64_t{1} << 30));
+}
+
+/// Calls fn(part) for the parts of a box whose planes for_each_plane() can hold in `max_bytes`:
 /// bands of rows, ascending, the whole box if it fits.
 template <class Fn>
-void for_each_band(const Box3i& box, PlaneAxes axes, std::uint64_t most_bytes, const Fn& fn) {
-  const auto columns = static_cast<std::uint64_t>(box.hi[axes.column] - box.lo[axes.column]);
-  const std::uint64_t row_bytes = 6 * (((columns + 63) / 64) * 8 + 1);
-  const auto rows = static_cast<std::int32_t>(
-      std::clamp<std::uint64_t>(most_bytes / row_bytes, 1, std::uint64_t{1} << 30));
+void for_each_band(const Box3i& box, PlaneAxes axes, std::uint64_t max_bytes, const Fn& fn) {
+  const std::int32_t rows = rows_in(max_bytes, box, axes);
   for (std::int32_t begin = box.lo[axes.row]; begin < box.hi[axes.row]; begin += rows) {
     Box3i part = box;
     part.lo[axes.row] = begin;
@@ -136,9 +141,8 @@ void for_each_row(const VoxelSet& voxels, const Box3i& box, PlaneAxes axes, cons
       for (std::int32_t row = 0; row < plane.rows(); ++row) fn(k, first + row, plane.row(row));
     });
   };
-  bool fits = false;
-  for_each_band(box, axes, kMaxBytes, [&](const Box3i& band) { fits |= band == box; });
-  if (fits) return rows_of(box);
+  // One sweep over the box is fastest. If it does not fit, each plane is swept in bands.
+  if (box.hi[axes.row] - box.lo[axes.row] <= rows_in(kMaxBytes, box, axes)) return rows_of(box);
   for (std::int32_t k = box.lo[axes.plane]; k < box.hi[axes.plane]; ++k) {
     Box3i plane = box;
     plane.lo[axes.plane] = k;

@@ -44,7 +44,7 @@ class DagCounter {
     if (level == dag_.levels - 2)
       return static_cast<std::uint64_t>(popcount64(dag_.leaf_blocks[at]));
     const bool is_remembered = level < dag_.levels - 2 - kForgottenLevels;
-    auto& known = whole_[static_cast<std::size_t>(level)];
+    auto& known = whole_[level];
     if (is_remembered)
       if (const auto found = known.find(at); found != known.end()) return found->second;
     const std::uint64_t count = count_children(

@@ -93,8 +93,7 @@ void for_each_dense_strip(const VoxelSet& voxels, const Box3i& window, const std
       bytes.assign(static_cast<std::size_t>(strip_size.x * strip_size.y * strip_size.z), 0);
       voxels.for_each_voxel(strip, [&](Vec3i voxel) {
         const Vec3l at = Vec3l(voxel - strip.lo);
-        bytes[static_cast<std::size_t>((at[slow] * strip_size[mid] + at[mid]) * strip_size[fast] +
-                                       at[fast])] = 1;
+        bytes[(at[slow] * strip_size[mid] + at[mid]) * strip_size[fast] + at[fast]] = 1;
         ++done;
       });
       write(bytes);

@@ -58,7 +58,7 @@ Files dag_file(const Request& r) {
                 "this format is for DAGs, but the scene is an ESVO: build a .vdag of its mesh");
   const Box3i window = export_window(r.path, r.voxels, r.options);
   if (r.options.window)
-    kExport(r.path, crop(*dag, window, r.options.memory, nullptr).view(), r.grid, r.options);
+    kExport(r.path, crop(*dag, window, r.options.memory).view(), r.grid, r.options);
   else
     kExport(r.path, *dag, r.grid, r.options);
   return {r.path};

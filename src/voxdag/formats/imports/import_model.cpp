@@ -5,8 +5,8 @@
 namespace voxdag {
 
 ImportedModel import_model(const VoxelSource& source, const ImportOptions& options,
-                           const std::string& name, Progress* progress) {
-  ImportResult result = import_voxels(source, options, progress);
+                           const std::string& name, Work work) {
+  ImportResult result = import_voxels(source, options, work);
   VdagMetadata metadata;
   metadata.grid = result.grid;
   metadata.source = {name, result.read, 0};
@@ -16,8 +16,7 @@ ImportedModel import_model(const VoxelSource& source, const ImportOptions& optio
     metadata.attributes.colors = {color_bound_of(source, options),
                                   result.attributes.color_errors.squared};
   }
-  return {DagModel(std::move(result.dag), std::move(result.attributes), std::move(metadata),
-                   options.memory),
+  return {DagModel(std::move(result.dag), std::move(result.attributes), std::move(metadata), work),
           result.read, result.outside, result.not_finite};
 }
 

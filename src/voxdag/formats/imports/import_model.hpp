@@ -2,6 +2,7 @@
 /// Builds models from files of voxels and points.
 #include <string>
 
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/file/model/dag_model.hpp"
 #include "voxdag/formats/imports/import_voxels.hpp"
 
@@ -17,6 +18,6 @@ struct ImportedModel {
 /// Imports a source with import_voxels(). The metadata call it `name`. Throws Error, OverMemory and
 /// Cancelled.
 ImportedModel import_model(const VoxelSource& source, const ImportOptions& options,
-                           const std::string& name, Progress* progress = nullptr);
+                           const std::string& name, Work work = {});
 
 }  // namespace voxdag

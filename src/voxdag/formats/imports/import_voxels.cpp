@@ -30,10 +30,10 @@ struct Extent {
   std::uint64_t count = 0;
 };
 
-Extent extent_of(const VoxelSource& source, Progress* progress) {
+Extent extent_of(const VoxelSource& source, Work work) {
   Extent extent;
   source.visit_all([&](const VoxelBatch& batch) {
-    poll(progress);
+    work.poll();
     for (const Vec3d p : batch.places) {
       if (!is_finite(p)) continue;
       ++extent.count;
@@ -44,10 +44,10 @@ Extent extent_of(const VoxelSource& source, Progress* progress) {
   return extent;
 }
 
-Grid grid_of_voxels(const VoxelSource& source, const ImportOptions& options, Progress* progress) {
+Grid grid_of_voxels(const VoxelSource& source, const ImportOptions& options, Work work) {
   Grid grid = source.grid().value_or(Grid{});
   if (!source.grid()) {
-    const Extent extent = extent_of(source, progress);
+    const Extent extent = extent_of(source, work);
     const double most = std::max({extent.hi.x, extent.hi.y, extent.hi.z, 0.0});
     grid.levels =
         std::max(kMinLevels, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(most))));
@@ -61,7 +61,7 @@ Grid grid_of_voxels(const VoxelSource& source, const ImportOptions& options, Pro
   return grid;
 }
 
-Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Progress* progress) {
+Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Work work) {
   if (options.bounds)
     return options.levels ? grid_from_bounds(*options.bounds, *options.levels)
                           : grid_from_bounds(*options.bounds, *options.voxel_size);
@@ -69,7 +69,7 @@ Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Pro
       grid && !options.levels && !options.origin &&
       options.voxel_size.value_or(grid->voxel_size) == grid->voxel_size)
     return *grid;
-  const Extent extent = extent_of(source, progress);
+  const Extent extent = extent_of(source, work);
   if (extent.count == 0) throw Error("", "", "has no points, so it has no bounds");
   if (options.levels) {
     Box3d bounds{extent.lo, extent.hi};
@@ -99,12 +99,11 @@ Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Pro
 
 }  // namespace
 
-ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options,
-                           Progress* progress) {
+ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options, Work work) {
   const bool has_points = source.has_points();
   ImportResult result;
-  result.grid = has_points ? grid_of_points(source, options, progress)
-                           : grid_of_voxels(source, options, progress);
+  result.grid =
+      has_points ? grid_of_points(source, options, work) : grid_of_voxels(source, options, work);
   const int levels = result.grid.levels;
   const PointLocator locator(result.grid, source.coordinate_error());
   const auto voxel_of = [&](Vec3d place) -> std::optional<Vec3i> {
@@ -119,7 +118,7 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
   };
   // Calls add(voxel, index) for all places in the grid.
   const auto each_voxel = [&](const VoxelBatch& batch, const auto& add) {
-    poll(progress);
+    work.poll();
     result.read += batch.places.size();
     for (std::size_t i = 0; i < batch.places.size(); ++i) {
       const Vec3d place = batch.places[i];
@@ -132,8 +131,8 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
     }
   };
   if (options.colors && source.has_colors()) {
-    ColoredVoxelBuilder builder(levels, voxels_in_memory(options.memory, sizeof(ColoredCode)),
-                                options.folder, options.memory, progress,
+    ColoredVoxelBuilder builder(levels, voxels_in_memory(work.memory, sizeof(ColoredCode)),
+                                options.folder, work,
                                 source.has_palette() ? ColorRule::kLast : ColorRule::kMean);
     source.visit_all([&](const VoxelBatch& batch) {
       each_voxel(batch, [&](Vec3i voxel, std::size_t i) { builder.add(voxel, batch.colors[i]); });
@@ -142,8 +141,8 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
     result.dag = std::move(dag);
     result.attributes = std::move(attributes);
   } else {
-    VoxelBuilder builder(levels, voxels_in_memory(options.memory, sizeof(std::uint64_t)),
-                         options.folder, options.memory, progress);
+    VoxelBuilder builder(levels, voxels_in_memory(work.memory, sizeof(std::uint64_t)),
+                         options.folder, work);
     source.visit_all([&](const VoxelBatch& batch) {
       each_voxel(batch, [&](Vec3i voxel, std::size_t) { builder.add(voxel); });
     });

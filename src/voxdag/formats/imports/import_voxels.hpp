@@ -4,8 +4,7 @@
 
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/core/box.hpp"
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/formats/imports/voxel_source.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
@@ -20,7 +19,6 @@ struct ImportOptions {
   /// AttributeOptions::color_bound. Without it 0.05, or 0 for sources with a palette.
   std::optional<double> color_bound;
   std::filesystem::path folder;  ///< Of files for sorting.
-  MemoryBudget* memory = nullptr;
 };
 
 /// Returns the color_bound of an import.
@@ -46,7 +44,6 @@ struct ImportResult {
 /// Reads the file once or twice; memory is bounded. Throws Error, OverMemory and Cancelled.
 /// Voxels of sources without a place lie in a grid of `voxel_size` (default 1) with its corner at
 /// `origin` (default 0).
-ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options,
-                           Progress* progress = nullptr);
+ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options, Work work = {});
 
 }  // namespace voxdag

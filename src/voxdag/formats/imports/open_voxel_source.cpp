@@ -5,19 +5,8 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/formats/imports/file_placement.hpp"
-#include "voxdag/formats/imports/points/las_header.hpp"
-#include "voxdag/formats/imports/points/las_points.hpp"
-#include "voxdag/formats/imports/points/npy_points.hpp"
-#include "voxdag/formats/imports/points/pcd_points.hpp"
-#include "voxdag/formats/imports/points/ply_points.hpp"
-#include "voxdag/formats/imports/points/xyz_points.hpp"
-#include "voxdag/formats/imports/volumes/binvox.hpp"
-#include "voxdag/formats/imports/volumes/nifti.hpp"
-#include "voxdag/formats/imports/volumes/npy_volume.hpp"
-#include "voxdag/formats/imports/volumes/nrrd.hpp"
-#include "voxdag/formats/imports/volumes/png_slices.hpp"
-#include "voxdag/formats/imports/volumes/vdb.hpp"
-#include "voxdag/formats/imports/volumes/vox.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
+#include "voxdag/formats/imports/volumes/volume_sources.hpp"
 
 namespace voxdag {
 namespace {

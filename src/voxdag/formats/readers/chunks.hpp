@@ -16,14 +16,22 @@ namespace voxdag {
 
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 
-/// Splits `text` into chunks of whole lines, of about `chunk_bytes` each. Does not split after a
-/// line that ends with a backslash. The chunks depend on the text alone.
-std::vector<std::string_view> split_lines(std::string_view text, char line_end,
-                                          std::size_t chunk_bytes = kChunkBytes);
+/// The message if the file's contents differ between two passes of a reader.
+inline constexpr const char* kFileChanged = "the file changed while it was read";
 
-/// Returns where the line that holds byte `at` of the text ends, after its line end. A line that
-/// ends with a backslash goes on. Returns the text's size if `at` is beyond it.
-std::size_t end_of_line(std::string_view text, std::size_t at, char line_end);
+/// A text in chunks of whole lines, of about `chunk_bytes` each. A line that ends with a backslash
+/// goes on in the next line, so no chunk ends there. The chunks depend on the text alone.
+struct LineChunks {
+  std::string_view text;
+  char line_end = '\n';
+  std::size_t chunk_bytes = kChunkBytes;
+
+  std::size_t count() const { return text.size() / chunk_bytes + 1; }
+  /// Returns the lines of chunk `i`: those that begin after byte i * chunk_bytes, and not after
+  /// byte (i + 1) * chunk_bytes. Chunk 0 also has the first line.
+  std::string_view operator[](std::size_t i) const;
+  std::vector<std::string_view> all() const;
+};
 
 /// A value for `line_end`: the file is binary, and errors name the byte.
 inline constexpr char kNoLines = '\0';
@@ -38,10 +46,11 @@ struct Fault {
 [[noreturn]] void throw_fault(const MeshSource& source, const Fault& fault, char line_end);
 
 /// Runs body(i) for every chunk in parallel and releases the chunk's pages. A body reports bad
-/// input by throwing Fault; throws the fault of the earliest chunk as an Error. Throws Cancelled.
+/// input by throwing Fault. Returns the fault of the earliest chunk. Throws Cancelled.
 template <class Body>
-void for_each_chunk(const MeshSource& source, const std::vector<std::string_view>& chunks,
-                    char line_end, std::string_view stage, const Body& body) {
+std::optional<Fault> find_fault(const MeshSource& source,
+                                const std::vector<std::string_view>& chunks, std::string_view stage,
+                                const Body& body) {
   std::vector<std::optional<Fault>> faults(chunks.size());
   parallel_for(chunks.size(), [&](std::size_t i) {
     try {
@@ -52,7 +61,16 @@ void for_each_chunk(const MeshSource& source, const std::vector<std::string_view
     source.done_with(chunks[i], stage);
   });
   for (const auto& fault : faults)
-    if (fault) throw_fault(source, *fault, line_end);
+    if (fault) return fault;
+  return std::nullopt;
+}
+
+/// Runs find_fault() and throws its fault as an Error.
+template <class Body>
+void for_each_chunk(const MeshSource& source, const std::vector<std::string_view>& chunks,
+                    char line_end, std::string_view stage, const Body& body) {
+  if (const auto fault = find_fault(source, chunks, stage, body))
+    throw_fault(source, *fault, line_end);
 }
 
 }  // namespace voxdag

@@ -2,10 +2,10 @@
 
 #include <utility>
 
-#include "voxdag/formats/readers/obj/obj_mesh_chunks.hpp"
-#include "voxdag/formats/readers/ply/ply_mesh_chunks.hpp"
+#include "voxdag/formats/readers/obj/obj_reader.hpp"
+#include "voxdag/formats/readers/ply/ply_reader.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
-#include "voxdag/formats/readers/stl/stl_mesh_chunks.hpp"
+#include "voxdag/formats/readers/stl/stl_reader.hpp"
 
 namespace voxdag {
 

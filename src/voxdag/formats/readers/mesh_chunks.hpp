@@ -7,31 +7,20 @@
 /// triangles.
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 
 #include "voxdag/formats/readers/chunks.hpp"
+#include "voxdag/formats/readers/face_writer.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
 
-inline constexpr const char* kFileChanged = "the file changed while it was read";
-
 /// The contents of a chunk.
 struct ChunkCounts {
   std::uint64_t vertices = 0, triangles = 0;
-};
-
-/// The vertices of a whole mesh.
-struct AllVertices {
-  std::uint64_t before = 0;  ///< Number of vertices in the chunks before.
-  std::uint64_t count = 0;   ///< Number of vertices of the mesh.
-  /// Returns the position of a vertex below `count`. Called for polygons of more than three corners
-  /// only, while read_triangles() runs.
-  std::function<Vec3f(std::uint32_t)> position;
 };
 
 /// A mesh file in chunks. Threads may read chunks at the same time, in any order. The functions
@@ -68,7 +57,7 @@ class MeshChunks {
   /// Runs work() on a part of the file, makes errors of its faults, and drops the part's pages.
   template <class Work>
   void read(std::string_view part, char line_end, const Work& work) const {
-    if (source_.options.progress != nullptr) source_.options.progress->throw_if_cancelled();
+    source_.work().poll();
     try {
       work();
     } catch (const Fault& fault) {

@@ -8,6 +8,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/formats/readers/read_options.hpp"
 
 namespace voxdag {
@@ -21,16 +22,16 @@ struct MeshSource {
   const MappedFile* file = nullptr;  ///< The mapping that `bytes` views. Null: plain memory.
   ReadOptions options;
 
+  const Work& work() const { return options.work; }
+
   /// Drops the mapped pages of `part` from memory after it has been read, and from time to time
   /// those of the mesh. Reports progress. Throws Cancelled.
   void done_with(std::string_view part, std::string_view stage) const {
     if (file != nullptr) file->release(part);
     count_work(part.size());
-    if (options.progress == nullptr) return;
-    options.progress->throw_if_cancelled();
+    work().poll();
     const auto end = static_cast<std::size_t>(part.data() + part.size() - bytes.data());
-    options.progress->report(stage, static_cast<double>(end) / static_cast<double>(bytes.size()),
-                             end);
+    work().report_done(stage, end, bytes.size());
   }
 
   /// Counts work on the arrays of the mesh: the bytes of input that were processed, or the bytes
@@ -52,14 +53,12 @@ struct MeshSource {
 /// Polls cancellation once in 65,536 steps, for loops inside one very long line or array.
 class CancelPoll {
  public:
-  explicit CancelPoll(const Progress* progress) : progress_(progress) {}
+  explicit CancelPoll(Work work) : work_(work) {}
   /// Counts one step; call it in each iteration. Throws Cancelled.
-  void step() {
-    if ((++steps_ & 0xFFFF) == 0 && progress_ != nullptr) progress_->throw_if_cancelled();
-  }
+  void step() { work_.poll_seldom(++steps_); }
 
  private:
-  const Progress* progress_;
+  Work work_;
   std::uint32_t steps_ = 0;
 };
 

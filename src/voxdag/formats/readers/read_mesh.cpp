@@ -30,7 +30,7 @@ MeshWithAppearance read_format(const MeshSource& source, const std::string& exte
                                ReadParts parts) {
   const auto finish = [&](Mesh mesh) {
     if (parts == ReadParts::kMesh) return MeshWithAppearance{std::move(mesh), {}, {}};
-    const MemoryReservation materials(source.options.memory,
+    const MemoryReservation materials(source.work().memory,
                                       mesh.materials.size() * sizeof(Material));
     return in_grey(std::move(mesh));
   };
@@ -59,8 +59,8 @@ MeshWithAppearance read(const std::filesystem::path& path, const ReadOptions& op
   try {
     MeshWithAppearance result = read_format(source, path.extension().string(), parts);
     source.end_pass();
-    if (options.memory != nullptr)
-      options.memory->reserve(memory_bytes(result.mesh) + memory_bytes(result.appearance));
+    if (options.work.memory != nullptr)
+      options.work.memory->reserve(memory_bytes(result.mesh) + memory_bytes(result.appearance));
     return result;
   } catch (const OverMemory& over) {
     if (!over.file().empty()) throw;

@@ -15,10 +15,10 @@ namespace voxdag {
 /// Every index of the mesh is in range, every vertex that a triangle uses is finite, and there is
 /// at least one triangle. The result depends on the file alone, not on the number of threads.
 ///
-/// Memory: if ReadOptions::memory is set, reads within that budget. memory_bytes(mesh) stay
-/// reserved; the caller releases them when it frees the mesh. Pages of mapped files do not count:
-/// they are released as they are read. With ReadOptions::arrays, a mesh can be larger than memory:
-/// its arrays are in files, and few of their pages stay resident.
+/// Memory: if ReadOptions::work has a budget, reads within it. memory_bytes(mesh) stay reserved;
+/// the caller releases them when it frees the mesh. Pages of mapped files do not count: they are
+/// released as they are read. With ReadOptions::arrays, a mesh can be larger than memory: its
+/// arrays are in files, and few of their pages stay resident.
 ///
 /// Throws Error with the line, byte or JSON value at fault, Error with the folder's name if the
 /// folder of ReadOptions::arrays is full, OverMemory with the file's name, and Cancelled.
@@ -30,16 +30,6 @@ Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {
 /// ReadOptions::allow_outside is set. memory_bytes() of mesh and appearance stay reserved.
 MeshWithAppearance read_mesh_with_appearance(const std::filesystem::path& path,
                                              const ReadOptions& options = {});
-
-/// Reads a mesh with default options.
-inline Mesh read_mesh(const std::filesystem::path& path, Progress* progress) {
-  return read_mesh(path, ReadOptions{.progress = progress});
-}
-/// Reads a mesh and its appearance with default options.
-inline MeshWithAppearance read_mesh_with_appearance(const std::filesystem::path& path,
-                                                    Progress* progress) {
-  return read_mesh_with_appearance(path, ReadOptions{.progress = progress});
-}
 
 enum class MeshFormat { kObj, kPly, kStl, kGltf, kOff, kOther };
 

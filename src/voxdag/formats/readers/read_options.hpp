@@ -5,14 +5,12 @@
 #include <vector>
 
 #include "voxdag/core/io/mapped_arrays.hpp"
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
 struct ReadOptions {
-  Progress* progress = nullptr;    ///< Null: no reports, no cancellation.
-  MemoryBudget* memory = nullptr;  ///< Counts mesh and scratch memory. Null: no limit.
+  Work work = {};  ///< Counts mesh and scratch memory.
   /// If not null: the arrays of the mesh are here, and do not count as memory. It must outlive the
   /// mesh. The arrays of the appearance stay on the heap.
   MappedArrays* arrays = nullptr;

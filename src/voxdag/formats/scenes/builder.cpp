@@ -19,7 +19,7 @@ std::uint32_t Builder::vertex(Vec3d local) {
 }
 
 void Builder::triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  if (progress_ != nullptr) progress_->throw_if_cancelled();
+  work_.poll();
   const Vec3d p = static_cast<Vec3d>(mesh_.vertices[a]);
   const Vec3d n =
       cross(static_cast<Vec3d>(mesh_.vertices[b]) - p, static_cast<Vec3d>(mesh_.vertices[c]) - p);
@@ -144,8 +144,8 @@ void Builder::sweep(const Profile& outline, const std::vector<Frame>& path, bool
   const int points = static_cast<int>(outline.size()), stations = static_cast<int>(path.size());
   surface(closed_outline ? points : points - 1, closed_path ? stations : stations - 1,
           closed_outline, closed_path, [&](int i, int j) {
-            const Point2 p = outline[static_cast<std::size_t>(i)];
-            return path[static_cast<std::size_t>(j)].point({p.x, p.y, 0});
+            const Point2 p = outline[i];
+            return path[j].point({p.x, p.y, 0});
           });
 }
 

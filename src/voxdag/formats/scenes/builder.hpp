@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/formats/scenes/math.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
@@ -19,8 +19,8 @@ using Profile = std::vector<Point2>;
 
 class Builder {
  public:
-  /// If `progress` (may be null) is cancelled, triangle() throws Cancelled.
-  explicit Builder(const Progress* progress = nullptr) : progress_(progress) {}
+  /// If `work` is cancelled, triangle() throws Cancelled.
+  explicit Builder(Work work = {}) : work_(work) {}
 
   /// Sets the material of the next triangles, by name; adds a new name to the mesh.
   void material(std::string_view name);
@@ -72,7 +72,7 @@ class Builder {
   void carved_lathe(const Profile& profile, int sides, const F& f, double phase = 0) {
     surface(sides, static_cast<int>(profile.size()) - 1, true, false, [&](int i, int j) {
       const double t = phase - static_cast<double>(i) / sides;
-      const Point2 p = profile[static_cast<std::size_t>(j)];
+      const Point2 p = profile[j];
       const double r = p.x * f(t, j);
       return Vec3d{r * cos_turns(t), p.y, r * sin_turns(t)};
     });
@@ -100,7 +100,7 @@ class Builder {
   Mesh take() { return std::move(mesh_); }
 
  private:
-  const Progress* progress_;
+  Work work_;
   Mesh mesh_;
   Frame frame_;
   std::uint32_t material_ = 0;

@@ -115,9 +115,9 @@ void streets(Builder& b, std::uint32_t seed, int blocks) {
 
 }  // namespace
 
-Mesh make_city(double size, std::uint32_t seed, const Progress* progress) {
+Mesh make_city(double size, std::uint32_t seed, Work work) {
   const int blocks = static_cast<int>(size);
-  Builder b(progress);
+  Builder b(work);
   streets(b, seed, blocks);
   for (int k = 0; k < blocks; ++k)
     for (int i = 0; i < blocks; ++i) block(b, seed, i, k, blocks);

@@ -81,9 +81,9 @@ void roof_clutter(Builder& b, Random& random, double x0, double x1, double z0, d
   std::vector<int> spots(static_cast<std::size_t>(nx) * nz);
   for (std::size_t i = 0; i < spots.size(); ++i) spots[i] = static_cast<int>(i);
   for (std::size_t i = spots.size(); i > 1; --i)
-    std::swap(spots[i - 1], spots[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+    std::swap(spots[i - 1], spots[random.below(static_cast<int>(i))]);
   for (int i = 0; i < things && i < static_cast<int>(spots.size()); ++i) {
-    const int spot = spots[static_cast<std::size_t>(i)];
+    const int spot = spots[i];
     const int column = spot % nx, row = spot / nx;
     const double x = x0 + 1 + (column + 0.5) * (w - 2) / nx,
                  z = z0 + 1 + (row + 0.5) * (d - 2) / nz;
@@ -128,7 +128,7 @@ void pitched_roof(Builder& b, Random& random, double x0, double x1, double z0, d
     const int last = static_cast<int>(outline.size()) - 1;
     const double from = s > 0 ? x0 - over : x1 + over, to = s > 0 ? x1 + over : x0 - over;
     b.surface(1, last, false, false, [&](int i, int j) {
-      const Point2 p = outline[static_cast<std::size_t>(j)];
+      const Point2 p = outline[j];
       return Vec3d{i == 0 ? from : to, p.y, zc + s * p.x};
     });
   }

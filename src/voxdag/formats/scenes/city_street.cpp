@@ -50,8 +50,7 @@ void car(Builder& b, Random& random) {
     }
     b.fan(left);
     b.fan({right.rbegin(), right.rend()});
-    b.surface(n, 1, true, false,
-              [&](int i, int j) { return (j == 0 ? left : right)[static_cast<std::size_t>(i)]; });
+    b.surface(n, 1, true, false, [&](int i, int j) { return (j == 0 ? left : right)[i]; });
   };
   b.material("paint");
   slab(body, 0.9, 0);

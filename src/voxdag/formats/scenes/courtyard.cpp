@@ -27,8 +27,8 @@ constexpr double kCourtFloor = -0.36;
 
 class Courtyard {
  public:
-  Courtyard(double size, std::uint32_t seed, const Progress* progress)
-      : b_(progress), detail_{size}, random_(seed, 1) {}
+  Courtyard(double size, std::uint32_t seed, Work work)
+      : b_(work), detail_{size}, random_(seed, 1) {}
 
   Mesh make() {
     ground();
@@ -356,8 +356,8 @@ void Courtyard::furniture() {
 
 }  // namespace
 
-Mesh make_courtyard(double size, std::uint32_t seed, const Progress* progress) {
-  return Courtyard(size, seed, progress).make();
+Mesh make_courtyard(double size, std::uint32_t seed, Work work) {
+  return Courtyard(size, seed, work).make();
 }
 
 ScenePreset courtyard_preset(double) {

@@ -17,12 +17,10 @@ void arch_wall(Builder& b, const Detail& d, double width, double top, double rad
   edge.push_back({width, 0});
   const int last = static_cast<int>(edge.size()) - 1;
   const auto lower = [&](int i, double z) {
-    const Point2 p = edge[static_cast<std::size_t>(i)];
+    const Point2 p = edge[i];
     return Vec3d{p.x, p.y, z};
   };
-  const auto upper = [&](int i, double z) {
-    return Vec3d{edge[static_cast<std::size_t>(i)].x, top, z};
-  };
+  const auto upper = [&](int i, double z) { return Vec3d{edge[i].x, top, z}; };
   b.surface(last, 1, false, false,
             [&](int i, int j) { return j == 0 ? lower(i, half) : upper(i, half); });
   b.surface(last, 1, false, false,

@@ -21,7 +21,7 @@ void basin(Builder& b, const Detail& d, double r, int lobes) {
                              {0, -0.24 * r}},
                             d(4, 2));
   b.carved_lathe(p, lobes * d(8, 4), [&](double t, int j) {
-    const double out = p[static_cast<std::size_t>(j)].x / r;
+    const double out = p[j].x / r;
     return 1 + 0.07 * smoothstep(0.25, 0.8, out) * (std::abs(cos_turns(t * lobes * 0.5)) - 0.6);
   });
 }
@@ -113,7 +113,7 @@ void fountain(Builder& b, const Detail& d, Random& random) {
       {{0.1, 2.12}, {0.06, 2.2}, {0.11, 2.26}, {0.14, 2.36}, {0.12, 2.48}, {0.06, 2.6}, {0, 2.66}},
       d(8, 3));
   b.carved_lathe(cone, d(48, 12), [&](double t, int j) {
-    const double y = cone[static_cast<std::size_t>(j)].y;
+    const double y = cone[j].y;
     return 1 +
            0.12 * smoothstep(2.24, 2.3, y) * cos_turns(8 * t + 12 * y) * cos_turns(8 * t - 12 * y);
   });

@@ -25,7 +25,7 @@ void agave(Builder& b, const Detail& d, Random& random, double size) {
       b.surface(2, nv, false, false, [&](int u, int v) {
         const double t = static_cast<double>(v) / nv;
         const double half = 0.075 * size * (1 - t * t) * smoothstep(-0.6, 0.4, t) + 0.001;
-        const Point2 p = spine[static_cast<std::size_t>(v)];
+        const Point2 p = spine[v];
         return Vec3d{(u - 1) * half, p.y + (u == 1 ? -0.35 * half : 0), p.x};
       });
     });

@@ -36,16 +36,16 @@ std::vector<Vec3d> hair_path(Random& random) {
                                              (0.028 * sin_turns(rates[k] * t + phases[k])));
     const Vec3d a = normalized(cross(direction, curl_axis)), b = cross(direction, a);
     const Vec3d loop = a * cos_turns(curl_rate * t) + b * sin_turns(curl_rate * t);
-    path[static_cast<std::size_t>(i)] = direction * lerp(inner, outer, std::sqrt(t)) + loop * curl;
+    path[i] = direction * lerp(inner, outer, std::sqrt(t)) + loop * curl;
   }
   return path;
 }
 
 }  // namespace
 
-Mesh make_hairball(double size, std::uint32_t seed, const Progress* progress) {
+Mesh make_hairball(double size, std::uint32_t seed, Work work) {
   const int hairs = static_cast<int>(size);
-  Builder builder(progress);
+  Builder builder(work);
   builder.material("hair");
   std::vector<double> radii(kRings + 2, kRadius);
   radii.front() = radii.back() = 0;

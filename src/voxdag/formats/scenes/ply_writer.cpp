@@ -36,7 +36,7 @@ std::string header(const Mesh& mesh, bool with_materials) {
 
 }  // namespace
 
-void write_ply(const std::filesystem::path& path, const Mesh& mesh, const Progress* progress) {
+void write_ply(const std::filesystem::path& path, const Mesh& mesh, Work work) {
   const bool with_materials = !mesh.triangle_materials.empty();
   AtomicFile file(path);
   file.write(header(mesh, with_materials));
@@ -44,7 +44,7 @@ void write_ply(const std::filesystem::path& path, const Mesh& mesh, const Progre
   std::array<unsigned char, 17> face{3};  // count, three indices, material
   const std::size_t bytes = with_materials ? 17 : 13;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (progress != nullptr) progress->throw_if_cancelled();
+    work.poll();
     std::memcpy(face.data() + 1, &mesh.triangles[i], 12);
     if (with_materials) std::memcpy(face.data() + 13, &mesh.triangle_materials[i], 4);
     file.write(face.data(), bytes);

@@ -12,7 +12,7 @@ namespace {
 
 struct Entry {
   SceneInfo info;
-  Mesh (*make)(double size, std::uint32_t seed, const Progress* progress);
+  Mesh (*make)(double size, std::uint32_t seed, Work work);
   ScenePreset (*preset)(double size);
 };
 
@@ -73,9 +73,9 @@ double checked_size(const SceneInfo& info, double size) {
 
 std::span<const SceneInfo> scene_list() { return kInfos; }
 
-Mesh make_scene(std::string_view name, const SceneOptions& options, const Progress* progress) {
+Mesh make_scene(std::string_view name, const SceneOptions& options, Work work) {
   const Entry& entry = find(name);
-  return entry.make(checked_size(entry.info, options.size), options.seed, progress);
+  return entry.make(checked_size(entry.info, options.size), options.seed, work);
 }
 
 ScenePreset scene_preset(std::string_view name, const SceneOptions& options) {

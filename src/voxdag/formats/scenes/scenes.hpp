@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
@@ -45,9 +45,8 @@ std::span<const SceneInfo> scene_list();
 
 /// Generates a scene. World units are metres, y is up, axes are right-handed, triangles wind
 /// counter-clockwise seen from outside. Materials name the parts. Throws Error for an unknown name
-/// or a size outside the scene's range, and Cancelled if `progress` (may be null) is cancelled.
-Mesh make_scene(std::string_view name, const SceneOptions& options = {},
-                const Progress* progress = nullptr);
+/// or a size outside the scene's range, and Cancelled if `work` is cancelled.
+Mesh make_scene(std::string_view name, const SceneOptions& options = {}, Work work = {});
 
 /// Returns a good view of the scene that make_scene() generates from these arguments. Throws Error
 /// for an unknown name or a size outside the scene's range.

@@ -30,10 +30,10 @@ double sponge_cell(int cells) {
 
 }  // namespace
 
-Mesh make_sponge(double size, std::uint32_t, const Progress* progress) {
+Mesh make_sponge(double size, std::uint32_t, Work work) {
   const int cells = sponge_cells(size);
   const double cell = sponge_cell(cells);
-  Builder builder(progress);
+  Builder builder(work);
   builder.material("sponge");
   // Vertices of the two planes around a layer of cells: neighbouring cells share them.
   constexpr std::uint32_t kNone = ~0u;

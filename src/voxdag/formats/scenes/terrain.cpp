@@ -128,9 +128,9 @@ void trees(Builder& b, const HeightField& field, std::uint32_t seed) {
 
 }  // namespace
 
-Mesh make_terrain(double size, std::uint32_t seed, const Progress* progress) {
+Mesh make_terrain(double size, std::uint32_t seed, Work work) {
   const HeightField field = mountain_heights(static_cast<int>(size), kSide, seed);
-  Builder b(progress);
+  Builder b(work);
   b.frame({{-kSide / 2, 0, -kSide / 2}});
   block(b, field);
   lake(b, field, seed);

@@ -35,14 +35,13 @@ class HeightRange {
 }  // namespace
 
 DisplacedTriangles::DisplacedTriangles(const Mesh& mesh, const Appearance& appearance,
-                                       std::vector<Displacement> displacements, Progress* progress,
-                                       MemoryBudget* memory)
-    : mesh_{mesh, appearance, std::move(displacements)}, bounds_(memory) {
+                                       std::vector<Displacement> displacements, Work work)
+    : mesh_{mesh, appearance, std::move(displacements)}, bounds_(work.memory) {
   for (const Displacement& d : mesh_.displacements)
     if (d.moves()) radius_ = std::max({radius_, std::abs(d.base), std::abs(d.base + d.gain)});
-  if (radius_ > 0) seams_ = DisplacementSeams(mesh_, progress, memory);
+  if (radius_ > 0) seams_ = DisplacementSeams(mesh_, work);
   bounds_.resize(mesh.triangles.size());
-  polled_for(bounds_.size(), 256, progress, "displaced bounds",
+  polled_for(bounds_.size(), 256, work, "displaced bounds",
              [&](std::size_t i) { bounds_[i] = find_bounds(static_cast<std::uint32_t>(i)); });
 }
 
@@ -191,7 +190,7 @@ std::uint32_t DisplacedTriangles::piece_meets(const Pass& pass, PieceCorner& a, 
   const Box3d box = enclose(pass, a, b, c).box();
   std::uint32_t met = 0, surely = 0;
   for (std::uint32_t left = set; left != 0; left &= left - 1) {
-    const Box3d& region = regions[static_cast<std::size_t>(std::countr_zero(left))];
+    const Box3d& region = regions[std::countr_zero(left)];
     if (!meets(box, region)) continue;
     met |= left & -left;
     if (min(box.lo, region.lo) == region.lo && max(box.hi, region.hi) == region.hi)

@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "voxdag/core/box.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec2.hpp"
 #include "voxdag/mesh/displace/displaced_mesh.hpp"
 #include "voxdag/mesh/displace/displaced_piece.hpp"
 #include "voxdag/mesh/displace/displacement_seams.hpp"
-#include "voxdag/mesh/displace/split_at_midpoints.hpp"
 
 namespace voxdag {
 
@@ -32,11 +32,10 @@ struct MicroTriangle {
 /// on the mesh alone.
 class DisplacedTriangles {
  public:
-  /// `displacements` has one element for each material. Counts the tables in `memory` as long as
-  /// they live; null means no limit. Throws Cancelled and OverMemory.
+  /// `displacements` has one element for each material. Counts the tables in `work` as long as they
+  /// live. Throws Cancelled and OverMemory.
   DisplacedTriangles(const Mesh& mesh, const Appearance& appearance,
-                     std::vector<Displacement> displacements, Progress* progress = nullptr,
-                     MemoryBudget* memory = nullptr);
+                     std::vector<Displacement> displacements, Work work = {});
 
   /// Returns whether the inside of a triangle moves. If not, tessellate() emits the triangle
   /// unsplit.

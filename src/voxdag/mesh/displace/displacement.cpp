@@ -38,9 +38,8 @@ std::string too_large_text(double amount, double side) {
 }  // namespace
 
 std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance& appearance,
-                                             std::vector<std::string>& warnings, Progress* progress,
-                                             MemoryBudget* memory) {
-  const ImageOptions options = image_options(progress, memory);
+                                             std::vector<std::string>& warnings, Work work) {
+  const ImageOptions options = image_options(work);
   std::vector<Displacement> displacements(appearance.materials.size());
   if (appearance.uvs.empty()) return displacements;
   const double side = longest_side(mesh);
@@ -49,12 +48,9 @@ std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance&
     const Material& material = appearance.materials[i];
     const TextureUse& use = material.displacement_map;
     if (!use.exists()) continue;
-    if (progress != nullptr) {
-      progress->throw_if_cancelled();
-      progress->report("height textures",
-                       static_cast<double>(i) / static_cast<double>(displacements.size()), i);
-    }
-    const TextureImage& image = appearance.images[static_cast<std::size_t>(use.image)];
+    work.poll();
+    work.report_done("height textures", i, displacements.size());
+    const TextureImage& image = appearance.images[use.image];
     const double base = material.displacement_base, gain = material.displacement_gain;
     if (const double most = std::max(std::fabs(base), std::fabs(base + gain));
         is_too_large(most, side)) {

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/image/texture.hpp"
 #include "voxdag/mesh/appearance.hpp"
 
@@ -25,12 +24,10 @@ struct Displacement {
 
 /// Loads the displacement maps of the materials and returns a displacement for each material.
 /// Leaves out a map that cannot be read, or that moves points by more than 2^kMaxLevels times the
-/// mesh's longest side; `warnings` gets a line about it. `memory`, if not null, counts the heights
-/// and must outlive them. Throws Cancelled and OverMemory.
+/// mesh's longest side; `warnings` gets a line about it. `work` counts the heights as long as they
+/// live. Throws Cancelled and OverMemory.
 std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance& appearance,
-                                             std::vector<std::string>& warnings,
-                                             Progress* progress = nullptr,
-                                             MemoryBudget* memory = nullptr);
+                                             std::vector<std::string>& warnings, Work work = {});
 
 /// Returns a displacement for each material. All use `heights` and move points by up to `amount`
 /// world units, which may be negative. A positive `box_size` projects the heights (see

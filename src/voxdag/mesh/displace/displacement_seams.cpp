@@ -34,34 +34,33 @@ struct PositionHash {
 };
 
 /// Reports the progress of one of three passes over the mesh, from time to time.
-void report(Progress* progress, int pass, std::size_t item, std::size_t count) {
-  if (progress == nullptr || item % 65536 != 0) return;
-  progress->throw_if_cancelled();
+void report(Work work, int pass, std::size_t item, std::size_t count) {
+  if (item % 65536 != 0) return;
+  work.poll();
   const double part = static_cast<double>(item) / static_cast<double>(count);
-  progress->report("displacement seams", (pass + part) / 3, item);
+  work.report("displacement seams", (pass + part) / 3, item);
 }
 
 }  // namespace
 
-DisplacementSeams::DisplacementSeams(const DisplacedMesh& mesh, Progress* progress,
-                                     MemoryBudget* memory)
-    : places_(memory),
-      corner_groups_(memory),
-      edge_groups_(memory),
-      groups_(memory),
-      members_(memory) {
-  number_places(mesh.mesh, progress);
-  group_corners(mesh, progress);
-  group_edges(mesh, progress);
+DisplacementSeams::DisplacementSeams(const DisplacedMesh& mesh, Work work)
+    : places_(work.memory),
+      corner_groups_(work.memory),
+      edge_groups_(work.memory),
+      groups_(work.memory),
+      members_(work.memory) {
+  number_places(mesh.mesh, work);
+  group_corners(mesh, work);
+  group_edges(mesh, work);
 }
 
-void DisplacementSeams::number_places(const Mesh& mesh, Progress* progress) {
+void DisplacementSeams::number_places(const Mesh& mesh, Work work) {
   using PlaceOf = std::unordered_map<Vec3f, std::uint32_t, PositionHash, std::equal_to<>,
                                      CountedAllocator<std::pair<const Vec3f, std::uint32_t>>>;
   PlaceOf place_of(mesh.vertices.size(), PlaceOf::allocator_type(places_.get_allocator()));
   places_.reserve(3 * mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    report(progress, 0, i, mesh.triangles.size());
+    report(work, 0, i, mesh.triangles.size());
     for (const std::uint32_t vertex : mesh.triangles[i])
       places_.push_back(
           place_of.try_emplace(mesh.vertices[vertex], static_cast<std::uint32_t>(place_of.size()))
@@ -96,7 +95,7 @@ void DisplacementSeams::add_group(const DisplacedMesh& mesh, std::span<const Cor
   groups_.push_back(group);
 }
 
-void DisplacementSeams::group_corners(const DisplacedMesh& mesh, Progress* progress) {
+void DisplacementSeams::group_corners(const DisplacedMesh& mesh, Work work) {
   const auto allocator = places_.get_allocator();
   // Counting sort of the corners by place.
   CountedVector<std::uint32_t> starts(place_count_ + 1, allocator);
@@ -109,13 +108,13 @@ void DisplacementSeams::group_corners(const DisplacedMesh& mesh, Progress* progr
   corner_groups_ = places_;
   groups_.reserve(place_count_ + places_.size() / 2);
   for (std::size_t place = 0; place < place_count_; ++place) {
-    report(progress, 1, place, place_count_);
+    report(work, 1, place, place_count_);
     add_group(mesh, {sorted.data() + starts[place], sorted.data() + starts[place + 1]},
               [&](CornerIndex a, CornerIndex b) { return corners_agree(mesh, a, b); });
   }
 }
 
-void DisplacementSeams::group_edges(const DisplacedMesh& mesh, Progress* progress) {
+void DisplacementSeams::group_edges(const DisplacedMesh& mesh, Work work) {
   const auto key = [this](CornerIndex edge) {
     const Ends e = ends(edge);
     return std::uint64_t{places_[e.first]} << 32 | places_[e.last];
@@ -126,11 +125,11 @@ void DisplacementSeams::group_edges(const DisplacedMesh& mesh, Progress* progres
     const auto edge = static_cast<CornerIndex>(i);
     edges[i] = {key(edge), edge};
   }
-  polled_sort(edges.begin(), edges.end(), progress);
+  polled_sort(edges.begin(), edges.end(), work);
   edge_groups_.resize(edges.size());
   CountedVector<CornerIndex> coinciding(allocator);
   for (std::size_t first = 0; first < edges.size();) {
-    report(progress, 2, first, edges.size());
+    report(work, 2, first, edges.size());
     coinciding.clear();
     std::size_t last = first;
     for (; last < edges.size() && edges[last].first == edges[first].first; ++last) {

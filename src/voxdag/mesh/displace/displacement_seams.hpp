@@ -5,7 +5,7 @@
 #include <span>
 
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/displace/displaced_mesh.hpp"
 
 namespace voxdag {
@@ -30,8 +30,7 @@ class DisplacementSeams {
 
   DisplacementSeams() = default;
   /// Finds the seams of the mesh. Throws Cancelled and OverMemory.
-  explicit DisplacementSeams(const DisplacedMesh& mesh, Progress* progress = nullptr,
-                             MemoryBudget* memory = nullptr);
+  explicit DisplacementSeams(const DisplacedMesh& mesh, Work work = {});
 
   Group corner_group(CornerIndex corner) const { return group(corner_groups_[corner]); }
   Group edge_group(CornerIndex edge) const { return group(edge_groups_[edge]); }
@@ -55,9 +54,9 @@ class DisplacementSeams {
     const StoredGroup& stored = groups_[index];
     return {{members_.data() + stored.first, stored.count}, stored.is_pinned};
   }
-  void number_places(const Mesh& mesh, Progress* progress);
-  void group_corners(const DisplacedMesh& mesh, Progress* progress);
-  void group_edges(const DisplacedMesh& mesh, Progress* progress);
+  void number_places(const Mesh& mesh, Work work);
+  void group_corners(const DisplacedMesh& mesh, Work work);
+  void group_edges(const DisplacedMesh& mesh, Work work);
   template <class Agree>
   void add_group(const DisplacedMesh& mesh, std::span<const CornerIndex> all, const Agree& agree);
   bool edges_agree(const DisplacedMesh& mesh, CornerIndex a, CornerIndex b) const;

@@ -49,7 +49,7 @@ class Loader {
   Loader(const Appearance& appearance, bool has_uvs, ImageOptions options)
       : appearance_(appearance), has_uvs_(has_uvs), options_(std::move(options)) {}
 
-  std::vector<ResolvedMaterial> load(std::vector<std::string>& warnings, Progress* progress) {
+  std::vector<ResolvedMaterial> load(std::vector<std::string>& warnings, Work work) {
     for (const Material& material : appearance_.materials) {
       request(color_key(material));
       request(normal_key(material));
@@ -58,12 +58,10 @@ class Loader {
     for (auto& entry : textures_) entries.push_back(&entry);
     std::atomic<std::size_t> done{0};
     const auto make_entry = [&](std::size_t i) {
-      if (progress != nullptr) progress->throw_if_cancelled();
+      work.poll();
       make(entries[i]->first, entries[i]->second);
       const std::size_t count = ++done;
-      if (progress != nullptr)
-        progress->report("textures",
-                         static_cast<double>(count) / static_cast<double>(entries.size()), count);
+      work.report_done("textures", count, entries.size());
     };
     parallel_for(entries.size(), [&](std::size_t i) {
       try {
@@ -119,9 +117,7 @@ class Loader {
       has_unused_textures_ = true;
   }
 
-  const TextureImage& image(int index) const {
-    return appearance_.images[static_cast<std::size_t>(index)];
-  }
+  const TextureImage& image(int index) const { return appearance_.images[index]; }
 
   void make(const TextureKey& key, LoadedTexture& loaded) const {
     const TextureImage& named = image(key.image >= 0 ? key.image : key.alpha_image);
@@ -215,9 +211,8 @@ class Loader {
 }  // namespace
 
 std::vector<ResolvedMaterial> load_materials(const Appearance& appearance, bool has_uvs,
-                                             std::vector<std::string>& warnings, Progress* progress,
-                                             MemoryBudget* memory) {
-  return Loader(appearance, has_uvs, image_options(progress, memory)).load(warnings, progress);
+                                             std::vector<std::string>& warnings, Work work) {
+  return Loader(appearance, has_uvs, image_options(work)).load(warnings, work);
 }
 
 DecodedImage decode_texture_image(const TextureImage& image, const ImageOptions& options) {
@@ -225,9 +220,9 @@ DecodedImage decode_texture_image(const TextureImage& image, const ImageOptions&
   return decode_image(image.bytes, image.name, options);
 }
 
-ImageOptions image_options(Progress* progress, MemoryBudget* memory) {
-  ImageOptions options{memory, {}};
-  if (progress != nullptr) options.poll = [progress] { progress->throw_if_cancelled(); };
+ImageOptions image_options(Work work) {
+  ImageOptions options{work.memory, {}};
+  if (work.progress != nullptr) options.poll = [work] { work.poll(); };
   return options;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/image/texture.hpp"
 #include "voxdag/mesh/appearance.hpp"
 
@@ -29,15 +29,13 @@ struct ResolvedMaterial {
 /// Cancelled, and OverMemory with the name of an image that does not fit even when it is decoded
 /// alone.
 std::vector<ResolvedMaterial> load_materials(const Appearance& appearance, bool has_uvs,
-                                             std::vector<std::string>& warnings, Progress* progress,
-                                             MemoryBudget* memory);
+                                             std::vector<std::string>& warnings, Work work);
 
 /// Decodes an image that a mesh names or contains. Throws Error and OverMemory, and passes
 /// exceptions of options.poll on.
 DecodedImage decode_texture_image(const TextureImage& image, const ImageOptions& options);
 
-/// Returns options that count memory in `memory` and throw Cancelled when `progress` is cancelled.
-/// Both may be null.
-ImageOptions image_options(Progress* progress, MemoryBudget* memory);
+/// Returns options that count memory in `work` and throw Cancelled when it is cancelled.
+ImageOptions image_options(Work work);
 
 }  // namespace voxdag

@@ -26,12 +26,11 @@ bool is_near(const ColorBounds& bounds, Vec3f mean, float error) {
 }  // namespace
 
 SurfaceShading::SurfaceShading(const Mesh& mesh, const Appearance& appearance,
-                               std::vector<std::string>* warnings, Progress* progress,
-                               MemoryBudget* memory) {
+                               std::vector<std::string>* warnings, Work work) {
   std::vector<std::string> ignored_warnings;
   std::vector<ResolvedMaterial> materials =
       load_materials(appearance, !appearance.uvs.empty(),
-                     warnings == nullptr ? ignored_warnings : *warnings, progress, memory);
+                     warnings == nullptr ? ignored_warnings : *warnings, work);
   if (materials.empty()) materials.emplace_back();
   const bool has_normal_maps = std::any_of(
       materials.begin(), materials.end(),
@@ -44,7 +43,7 @@ SurfaceShading::SurfaceShading(const Mesh& mesh, const Appearance& appearance,
           const ResolvedMaterial& material = materials[Appearance::material_index(mesh, t)];
           return material.normal_texture ? &material.normal_uv : nullptr;
         },
-        progress, memory);
+        work);
   tables_ = std::make_unique<const SurfaceTables>(
       SurfaceTables{mesh, appearance, std::move(materials), std::move(tangents)});
 }

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/core/vec2.hpp"
 #include "voxdag/mesh/appearance.hpp"
@@ -31,11 +30,10 @@ struct SurfaceSample {
 class SurfaceShading {
  public:
   /// Decodes the textures. A texture that cannot be read is left out; a line in `warnings` names it
-  /// and its replacement. Counts the textures and tables in `memory` as long as they live; null
-  /// means no limit. Throws Cancelled and OverMemory.
+  /// and its replacement. Counts the textures and tables in `work` as long as they live. Throws
+  /// Cancelled and OverMemory.
   SurfaceShading(const Mesh& mesh, const Appearance& appearance,
-                 std::vector<std::string>* warnings = nullptr, Progress* progress = nullptr,
-                 MemoryBudget* memory = nullptr);
+                 std::vector<std::string>* warnings = nullptr, Work work = {});
   ~SurfaceShading();
   SurfaceShading(SurfaceShading&&) noexcept;
 

@@ -45,8 +45,8 @@ ColorBounds SurfaceTables::color_bounds(std::uint32_t t, const ResolvedMaterial&
     const Texture::Bounds texels =
         bounds_of(*material.color_texture, polygon, uv(t), material.color_uv);
     for (int c = 0; c < 3; ++c) {
-      bounds.lo[c] *= static_cast<float>(texels.lo[static_cast<std::size_t>(c)]) * kTexelScale;
-      bounds.hi[c] *= static_cast<float>(texels.hi[static_cast<std::size_t>(c)]) * kTexelScale;
+      bounds.lo[c] *= static_cast<float>(texels.lo[c]) * kTexelScale;
+      bounds.hi[c] *= static_cast<float>(texels.hi[c]) * kTexelScale;
     }
   }
   return bounds;

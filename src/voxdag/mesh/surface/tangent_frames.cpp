@@ -27,11 +27,10 @@ struct CornerHash {
   }
 };
 
-void report_tangents(Progress* progress, std::size_t triangle, std::size_t count) {
-  if (progress == nullptr || triangle % 65536 != 0) return;
-  progress->throw_if_cancelled();
-  progress->report("tangents", static_cast<double>(triangle) / static_cast<double>(count),
-                   triangle);
+void report_tangents(Work work, std::size_t triangle, std::size_t count) {
+  if (triangle % 65536 != 0) return;
+  work.poll();
+  work.report_done("tangents", triangle, count);
 }
 
 }  // namespace
@@ -49,12 +48,11 @@ Vec3f face_normal(const Mesh& mesh, std::size_t triangle) {
 
 TangentTable::TangentTable(
     const Mesh& mesh, const Appearance& appearance,
-    const std::function<const UvTransform*(std::size_t triangle)>& uv_transform, Progress* progress,
-    MemoryBudget* memory)
-    : places_(mesh.triangles.size(), kNone, memory), tangents_(memory) {
+    const std::function<const UvTransform*(std::size_t triangle)>& uv_transform, Work work)
+    : places_(mesh.triangles.size(), kNone, work.memory), tangents_(work.memory) {
   using Sums = std::unordered_map<Corner, Vec3f, CornerHash, std::equal_to<>,
                                   CountedAllocator<std::pair<const Corner, Vec3f>>>;
-  Sums sums{Sums::allocator_type(memory)};
+  Sums sums{Sums::allocator_type(work.memory)};
   const auto corner_of = [&](std::size_t t, std::size_t c, bool mirrored) {
     Corner corner{mesh.vertices[mesh.triangles[t][c]], {}, appearance.uvs[3 * t + c], mirrored};
     if (!appearance.normals.empty()) corner.normal = appearance.normals[3 * t + c];
@@ -63,7 +61,7 @@ TangentTable::TangentTable(
   };
   std::uint32_t count = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    report_tangents(progress, t, mesh.triangles.size());
+    report_tangents(work, t, mesh.triangles.size());
     const UvTransform* const transform = uv_transform(t);
     if (transform == nullptr) continue;
     std::array<Vec3f, 3> p;

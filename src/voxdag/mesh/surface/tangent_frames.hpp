@@ -4,17 +4,51 @@
 /// After M. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited" (2008): the tangent of a corner
 /// is the mean of the tangents of the triangles around the vertex that agree in position, normal,
 /// texture coordinates and handedness, weighted by angle.
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/mesh/appearance.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
+
+inline Vec3f unit_or_zero(Vec3f v) {
+  const float length2 = dot(v, v);
+  return length2 > 0 ? v * (1 / std::sqrt(length2)) : Vec3f{};
+}
+
+/// Orthogonal axes of unit length.
+struct TangentFrame {
+  Vec3f tangent, bitangent, normal;
+
+  Vec3f to_world(Vec3f v) const { return tangent * v.x + bitangent * v.y + normal * v.z; }
+  Vec3f to_local(Vec3f v) const { return {dot(tangent, v), dot(bitangent, v), dot(normal, v)}; }
+};
+
+/// Returns the frame of a unit normal, with the tangent made orthogonal to it. `handedness` is 1 or
+/// -1: the sign of the bitangent.
+inline TangentFrame make_frame(Vec3f normal, Vec3f tangent, float handedness) {
+  tangent = tangent - normal * dot(normal, tangent);
+  if (dot(tangent, tangent) < 1e-12f) {
+    const Vec3f other = std::abs(normal.x) < 0.7f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0};
+    tangent = cross(other, normal);
+  }
+  tangent = unit_or_zero(tangent);
+  return {tangent, cross(normal, tangent) * handedness, normal};
+}
+
+/// Returns the angle of the rotation from one frame to the other, in radians.
+inline float angle_between(const TangentFrame& a, const TangentFrame& b) {
+  const float trace =
+      dot(a.tangent, b.tangent) + dot(a.bitangent, b.bitangent) + dot(a.normal, b.normal);
+  return std::acos(std::clamp((trace - 1) / 2, -1.0f, 1.0f));
+}
 
 /// The tangents of one triangle.
 struct CornerTangents {
@@ -30,7 +64,7 @@ class TangentTable {
   /// Cancelled and OverMemory.
   TangentTable(const Mesh& mesh, const Appearance& appearance,
                const std::function<const UvTransform*(std::size_t triangle)>& uv_transform,
-               Progress* progress = nullptr, MemoryBudget* memory = nullptr);
+               Work work = {});
 
   CornerTangents operator[](std::size_t triangle) const {
     if (places_.empty() || places_[triangle] == kNone) return {};

@@ -38,7 +38,7 @@ double estimate_seconds(const Film& film, const PictureRenderer& render) {
   small.occlusion_samples = film.options.occlusion_samples;
   small.view = as_request(film.path.at(film.path.start()));
   const auto start = Clock::now();
-  render(small, nullptr);
+  render(small, {});
   const double seconds = milliseconds_since(start) / 1000;
   const double pixels = static_cast<double>(film.options.width) * film.options.height;
   const double small_pixels = static_cast<double>(small.width) * small.height;
@@ -47,10 +47,10 @@ double estimate_seconds(const Film& film, const PictureRenderer& render) {
 }
 
 std::vector<FrameTiming> render_film(const Film& film, const PictureRenderer& render,
-                                     WorkQueue& queue, Progress& progress) {
+                                     WorkQueue& queue, Work work) {
   const std::vector<double> times = frame_times(film.path, film.frames_per_second);
   const std::vector<float> exposures =
-      film_exposures(film.path, times, film.options, render, queue, progress);
+      film_exposures(film.path, times, film.options, render, queue, work);
   RenderOptions options = film.options;
   return results_of<FrameTiming>(queue, times.size(), [&](std::size_t i) {
     FrameTiming timing;
@@ -59,18 +59,25 @@ std::vector<FrameTiming> render_film(const Film& film, const PictureRenderer& re
     options.view = as_request(film.path.at(times[i]));
     options.exposure = exposures[i];
     auto stage = Clock::now();
-    const RenderedImage image = render(options, nullptr);
-    progress.throw_if_cancelled();
+    const RenderedImage image = render(options, {});
+    work.poll();
     timing.render_ms = milliseconds_since(stage);
     timing.rays = image.rays;
     stage = Clock::now();
     for (const PicturePass& pass : film.passes)
       write_pass(*pass.kind, frame_name(pass.path, timing.frame), image);
     timing.write_ms = milliseconds_since(stage);
-    progress.report("frames", static_cast<double>(i + 1) / static_cast<double>(times.size()),
-                    i + 1);
+    work.report_done("frames", i + 1, times.size());
     return timing;
   });
+}
+
+std::string timings_csv(const std::vector<FrameTiming>& frames) {
+  std::string csv = "frame,time,render_ms,write_ms,rays,mrays_per_s\n";
+  for (const FrameTiming& frame : frames)
+    csv += fmt::format("{},{:.6g},{:.3f},{:.3f},{},{:.4f}\n", frame.frame, frame.time,
+                       frame.render_ms, frame.write_ms, frame.rays, frame.mrays_per_second());
+  return csv;
 }
 
 }  // namespace voxdag

@@ -1,13 +1,29 @@
 #pragma once
 /// Films: the frames along a camera path, rendered and written.
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "voxdag/core/parallel/work_queue.hpp"
 #include "voxdag/render/film/film_exposure.hpp"
-#include "voxdag/render/film/frame_timings.hpp"
 #include "voxdag/render/film/picture_pass.hpp"
 
 namespace voxdag {
+
+struct FrameTiming {
+  int frame = 0;
+  double time = 0;       ///< Time in the film, seconds.
+  double render_ms = 0;  ///< Casting and shading.
+  double write_ms = 0;   ///< Encoding and writing the picture.
+  std::uint64_t rays = 0;
+
+  double mrays_per_second() const {
+    return render_ms > 0 ? static_cast<double>(rays) / render_ms * 1e-3 : 0;
+  }
+};
+
+/// Returns a header line and a line per frame.
+std::string timings_csv(const std::vector<FrameTiming>& frames);
 
 inline constexpr double kMaxFramesPerSecond = 1000;
 inline constexpr double kMaxFrames = 1e6;
@@ -30,6 +46,6 @@ double estimate_seconds(const Film& film, const PictureRenderer& render);
 /// Renders and writes all frames, which are the items of `queue`. All its processes return the
 /// timings of all frames. Throws Error if a file cannot be written, and Cancelled.
 std::vector<FrameTiming> render_film(const Film& film, const PictureRenderer& render,
-                                     WorkQueue& queue, Progress& progress);
+                                     WorkQueue& queue, Work work);
 
 }  // namespace voxdag

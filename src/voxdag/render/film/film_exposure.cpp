@@ -17,15 +17,14 @@ RenderOptions thumbnail_options(const RenderOptions& options) {
 
 std::vector<float> film_exposures(const CameraPath& path, std::span<const double> times,
                                   const RenderOptions& options, const PictureRenderer& render,
-                                  WorkQueue& queue, Progress& progress) {
+                                  WorkQueue& queue, Work work) {
   if (options.exposure > 0) return std::vector<float>(times.size(), options.exposure);
   RenderOptions small = thumbnail_options(options);
   const auto logs = results_of<double>(queue, times.size(), [&](std::size_t i) {
     small.view = as_request(path.at(times[i]));
-    const double log = std::log(static_cast<double>(render(small, nullptr).exposure));
-    progress.throw_if_cancelled();
-    progress.report("exposure", static_cast<double>(i + 1) / static_cast<double>(times.size()),
-                    i + 1);
+    const double log = std::log(static_cast<double>(render(small, {}).exposure));
+    work.poll();
+    work.report_done("exposure", i + 1, times.size());
     return log;
   });
   return smoothed_exposures(times, logs);

@@ -4,15 +4,15 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/parallel/work_queue.hpp"
 #include "voxdag/render/film/camera_path.hpp"
 #include "voxdag/render/render_options.hpp"
 
 namespace voxdag {
 
-/// Renders a picture; `progress` may be null.
-using PictureRenderer = std::function<RenderedImage(const RenderOptions&, Progress* progress)>;
+/// Renders a picture.
+using PictureRenderer = std::function<RenderedImage(const RenderOptions&, Work work)>;
 
 /// Returns the options of a small, coarse picture of the scene, which is enough to measure its
 /// brightness.
@@ -24,7 +24,7 @@ RenderOptions thumbnail_options(const RenderOptions& options);
 /// `queue`, whose processes all return all exposures.
 std::vector<float> film_exposures(const CameraPath& path, std::span<const double> times,
                                   const RenderOptions& options, const PictureRenderer& render,
-                                  WorkQueue& queue, Progress& progress);
+                                  WorkQueue& queue, Work work);
 
 /// Returns exp of the mean of `logs` with Gaussian weights around each of the ascending `times`.
 /// The standard deviation is half a second. Time is linear in the frames for a fixed frame rate.

@@ -7,7 +7,7 @@ namespace voxdag {
 
 /// Numbers the cells of levels 0 to `finest_level`, 0 to L, of a valid DAG. The result depends on
 /// the voxels and the level alone. Serial; time in O(DAG). Counts its memory in `memory`, at most
-/// twice that of the result, until it returns; null: no limit. Throws OverMemory.
+/// twice that of the result, until it returns. Throws OverMemory.
 CellIndex build_cell_index(const SvdagView& dag, int finest_level, MemoryBudget* memory = nullptr);
 
 /// Throws Error unless `index` holds exactly the numbers that build_cell_index() computes for this

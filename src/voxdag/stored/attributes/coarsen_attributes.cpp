@@ -60,15 +60,14 @@ class ValueCopier {
 class Coarsener {
  public:
   Coarsener(const ColoredDagView& fine, const CellIndex& index, const CoarsenBounds& bounds,
-            MemoryBudget* memory, Progress* progress)
+            Work work)
       : fine_(fine),
         index_(index),
-        memory_(memory),
-        progress_(progress),
-        colors_(fine.attributes.colors, index.cells, color_metric(bounds), memory),
-        normals_(fine.attributes.normals, index.cells, normal_metric(bounds), memory) {
+        work_(work),
+        colors_(fine.attributes.colors, index.cells, color_metric(bounds), work.memory),
+        normals_(fine.attributes.normals, index.cells, normal_metric(bounds), work.memory) {
     if (fine.attributes.has_materials())
-      materials_.emplace(fine.attributes.materials.materials, memory);
+      materials_.emplace(fine.attributes.materials.materials, work.memory);
     numbers_.reserve(kAtOnce);
   }
 
@@ -76,7 +75,7 @@ class Coarsener {
     visit({});
     flush();
     result.colors = colors_.finish();
-    const MemoryReservation color_bytes(memory_, result.colors.view().bytes());
+    const MemoryReservation color_bytes(work_.memory, result.colors.view().bytes());
     result.normals = normals_.finish();
     if (materials_) result.materials = materials_->finish();
   }
@@ -95,7 +94,7 @@ class Coarsener {
   /// Encodes the values of the cells that were visited.
   void flush() {
     parallel_for((numbers_.size() + kPageValues - 1) / kPageValues, [&](std::size_t page) {
-      poll(progress_);
+      work_.poll();
       const std::size_t begin = page * kPageValues;
       const auto part = std::span(numbers_).subspan(
           begin, std::min<std::size_t>(kPageValues, numbers_.size() - begin));
@@ -107,15 +106,12 @@ class Coarsener {
         materials_->add(read_material(fine_.attributes.materials, number), 1);
     done_ += numbers_.size();
     numbers_.clear();
-    if (progress_ != nullptr)
-      progress_->report("attributes",
-                        static_cast<double>(done_) / static_cast<double>(index_.cells), done_);
+    work_.report_done("attributes", done_, index_.cells);
   }
 
   const ColoredDagView& fine_;
   const CellIndex& index_;
-  MemoryBudget* memory_;
-  Progress* progress_;
+  Work work_;
   ValueCopier colors_, normals_;
   std::optional<MaterialEncoder> materials_;
   std::vector<std::uint64_t> numbers_;  // in the fine grid, of cells that are not yet encoded
@@ -125,22 +121,21 @@ class Coarsener {
 }  // namespace
 
 DagAttributes coarsen_attributes(const ColoredDagView& fine, const SvdagView& coarse,
-                                 const CoarsenBounds& bounds, MemoryBudget* memory,
-                                 Progress* progress) {
+                                 const CoarsenBounds& bounds, Work work) {
   DagAttributes result;
   if (fine.is_empty()) return result;
   const int finest = fine.attributes.index.finest_level;
-  result.index = build_cell_index(coarse, std::min(finest, coarse.levels), memory);
-  const MemoryReservation index_bytes(memory, result.index.view().bytes());
+  result.index = build_cell_index(coarse, std::min(finest, coarse.levels), work.memory);
+  const MemoryReservation index_bytes(work.memory, result.index.view().bytes());
   if (finest <= coarse.levels) {
     // The cells with attributes, and so their numbers, are those of the fine grid.
     const auto& [fine_index, colors, normals, materials] = fine.attributes;
-    result.colors = {copy_of(colors, memory), colors.precision};
-    result.normals = {copy_of(normals, memory), normals.precision};
-    result.materials = {copy_of(materials, memory), materials.materials};
+    result.colors = {copy_of(colors, work.memory), colors.precision};
+    result.normals = {copy_of(normals, work.memory), normals.precision};
+    result.materials = {copy_of(materials, work.memory), materials.materials};
     return result;
   }
-  Coarsener(fine, result.index, bounds, memory, progress).fill(result);
+  Coarsener(fine, result.index, bounds, work).fill(result);
   return result;
 }
 

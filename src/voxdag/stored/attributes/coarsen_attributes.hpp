@@ -1,6 +1,6 @@
 #pragma once
 /// The attributes of a coarser grid.
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/attributes/dag_attributes.hpp"
 
 namespace voxdag {
@@ -17,10 +17,8 @@ struct CoarsenBounds {
 /// with attributes is a level of the coarse grid, the bytes of all values stay. Otherwise finer
 /// values are dropped, and the others are encoded again within `bounds`, materials without loss.
 /// The result's errors are not set. Runs on the current TBB arena. The budget no longer counts the
-/// result when the function returns. Throws OverMemory and Cancelled; `memory` and `progress` may
-/// be null.
+/// result when the function returns. Throws OverMemory and Cancelled.
 DagAttributes coarsen_attributes(const ColoredDagView& fine, const SvdagView& coarse,
-                                 const CoarsenBounds& bounds = {}, MemoryBudget* memory = nullptr,
-                                 Progress* progress = nullptr);
+                                 const CoarsenBounds& bounds = {}, Work work = {});
 
 }  // namespace voxdag

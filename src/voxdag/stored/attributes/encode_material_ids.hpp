@@ -10,8 +10,7 @@ namespace voxdag {
 /// Packs ids that come in the order of the cells' numbers.
 class MaterialEncoder {
  public:
-  /// Ids are less than `materials`, 1 to kMaxMaterials. Counts the packed ids in `memory`; null:
-  /// no limit.
+  /// Ids are less than `materials`, 1 to kMaxMaterials. Counts the packed ids in `memory`.
   explicit MaterialEncoder(std::uint32_t materials, MemoryBudget* memory = nullptr);
 
   /// Adds `count` cells of one material. Throws OverMemory.

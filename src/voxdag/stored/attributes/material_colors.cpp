@@ -22,9 +22,9 @@ Value8 material_color(std::uint32_t id) {
   return color;
 }
 
-ValuePages material_colors(const MaterialIdsView& ids, Progress* progress) {
+ValuePages material_colors(const MaterialIdsView& ids, Work work) {
   ValueEncoder encoder(ids.values, make_value_metric(kColorWeights, 0), nullptr);
-  polled_for(ids.page_count(), 256, progress, "materials", [&](std::size_t page) {
+  polled_for(ids.page_count(), 256, work, "materials", [&](std::size_t page) {
     const std::uint64_t first = page * std::uint64_t{kPageValues};
     const auto count =
         static_cast<std::size_t>(std::min<std::uint64_t>(kPageValues, ids.values - first));

@@ -1,6 +1,6 @@
 #pragma once
 /// Shows material ids as colours.
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/attributes/material_ids.hpp"
 #include "voxdag/stored/attributes/value_pages.hpp"
 
@@ -11,6 +11,6 @@ namespace voxdag {
 Value8 material_color(std::uint32_t id);
 
 /// Returns the colours of all cells. Runs on the current TBB arena. Throws Cancelled.
-ValuePages material_colors(const MaterialIdsView& ids, Progress* progress = nullptr);
+ValuePages material_colors(const MaterialIdsView& ids, Work work = {});
 
 }  // namespace voxdag

@@ -16,7 +16,7 @@ namespace voxdag {
 /// values of incomplete pages.
 class ValueEncoder {
  public:
-  /// Expects `values` values. Counts its memory in `memory`; null: no limit.
+  /// Expects `values` values. Counts its memory in `memory`.
   ValueEncoder(std::uint64_t values, const ValueMetric& metric, MemoryBudget* memory);
 
   /// Takes the values from number `first` on. Every value must be in exactly one call. Thread-safe.

@@ -133,16 +133,16 @@ void SymbolCounts::set_frequencies(ContextTree& tree) const {
   tree.prepare();
 }
 
-CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBudget* budget,
-                          Progress* progress, CodedSymbols& coded) {
+CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, Work work,
+                          CodedSymbols& coded) {
   const AllNodes all(nodes);
   const std::uint64_t stride = std::max<std::uint64_t>(count_bricks(nodes) / kSampledBricks, 1);
   SampleSink samples;
   // About 30 symbols a brick; vectors grow by doubling.
   const std::uint64_t sampled_bricks = std::min(count_bricks(nodes) * 5, 2 * kSampledBricks);
-  const MemoryReservation sampled(budget, 2 * sampled_bricks * 30 * sizeof(ContextSample));
+  const MemoryReservation sampled(work.memory, 2 * sampled_bricks * 30 * sizeof(ContextSample));
   for (std::uint64_t i = 0; i < all.size(); ++i) {
-    poll_seldom(progress, i);
+    work.poll_seldom(i);
     if (is_sample(i, stride)) all.visit(i, samples);
   }
   CompactTrees trees;
@@ -150,7 +150,7 @@ CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBud
     const auto s = static_cast<CompactSymbol>(symbol);
     const int share = s == kCellMask ? 1 : s == kLeafMask ? 2 : 8;
     const TreeLimits limits{kCompactFeatures[s], std::max(most_tables / share, 1), stride};
-    trees[s] = train_tree(samples.samples[s], limits, progress);
+    trees[s] = train_tree(samples.samples[s], limits, work);
     samples.samples[s] = {};
   });
 
@@ -158,11 +158,11 @@ CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBud
   for (const ContextTree& tree : trees) tables += tree.tables();
   const TableFinder finder(trees);
   tbb::enumerable_thread_specific<CountSink> sinks([&] { return CountSink(trees, finder); });
-  const MemoryReservation counted(budget, tables * 256 * sizeof(std::uint64_t) * 3);
+  const MemoryReservation counted(work.memory, tables * 256 * sizeof(std::uint64_t) * 3);
   // A brick has about 35 symbols.
-  coded.begin(all.size(), count_bricks(nodes) * 35, budget);
+  coded.begin(all.size(), count_bricks(nodes) * 35, work.memory);
   constexpr std::size_t kPart = CodedSymbols::kPart;
-  polled_for((all.size() + kPart - 1) / kPart, 1, progress, "model", [&](std::size_t part) {
+  polled_for((all.size() + kPart - 1) / kPart, 1, work, "model", [&](std::size_t part) {
     CountSink& sink = sinks.local();
     CodedSymbols::Part* const kept = coded.are_kept() ? &coded.part(part) : nullptr;
     sink.begin(kept);
@@ -172,7 +172,7 @@ CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBud
       sink.end_node();
     }
     sink.count();
-    if (kept != nullptr) kept->memory = MemoryReservation(budget, kept->bytes());
+    if (kept != nullptr) kept->memory = MemoryReservation(work.memory, kept->bytes());
   });
   for (std::size_t s = 0; s < trees.size(); ++s) {
     SymbolCounts sum(trees[s].tables());

@@ -12,13 +12,12 @@ constexpr std::uint32_t kNotPlaced = std::numeric_limits<std::uint32_t>::max();
 /// Walks the compact DAG depth first, which meets the nodes of each level in canonical order.
 class TopReader {
  public:
-  TopReader(const CompactSvdagView& compact, MemoryBudget* memory,
-            const std::function<void()>& poll)
-      : compact_(compact), poll_(poll), unit_level_(compact.coded_levels() - 4) {
-    for (int level = 0; level < unit_level_; ++level) top_.levels.emplace_back(memory);
+  TopReader(const CompactSvdagView& compact, Work work)
+      : compact_(compact), work_(work), unit_level_(compact.coded_levels() - 4) {
+    for (int level = 0; level < unit_level_; ++level) top_.levels.emplace_back(work.memory);
     for (int level = 0; level <= unit_level_; ++level)
-      places_.emplace_back(compact.shared_nodes(level), kNotPlaced, memory);
-    top_.units = CountedVector<CompactRange>(memory);
+      places_.emplace_back(compact.shared_nodes(level), kNotPlaced, work.memory);
+    top_.units = CountedVector<CompactRange>(work.memory);
   }
 
   CompactTop read() {
@@ -38,7 +37,7 @@ class TopReader {
       return static_cast<std::uint32_t>(top_.units.size() - 1);
     }
     CountedVector<std::uint32_t>& words = top_.levels[at(level)];
-    if ((++nodes_ & 0xFFFF) == 0) poll_();
+    work_.poll_seldom(++nodes_);
     CompactNode node;
     if (read_node(compact_, range, level, node) != CompactFault::kNone) fail_broken_stream();
     const std::size_t place = words.size();
@@ -65,7 +64,7 @@ class TopReader {
   }
 
   const CompactSvdagView& compact_;
-  const std::function<void()>& poll_;
+  Work work_;
   int unit_level_;
   std::uint64_t nodes_ = 0;
   CompactTop top_;
@@ -74,9 +73,8 @@ class TopReader {
 
 }  // namespace
 
-CompactTop expand_top(const CompactSvdagView& compact, MemoryBudget* memory,
-                      const std::function<void()>& poll) {
-  return TopReader(compact, memory, poll).read();
+CompactTop expand_top(const CompactSvdagView& compact, Work work) {
+  return TopReader(compact, work).read();
 }
 
 }  // namespace voxdag

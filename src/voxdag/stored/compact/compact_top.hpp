@@ -3,10 +3,9 @@
 ///
 /// They are a small part of a DAG's nodes, but rays visit them most often.
 #include <cstdint>
-#include <functional>
 #include <vector>
 
-#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/compact/compact_nodes.hpp"
 
 namespace voxdag {
@@ -20,10 +19,8 @@ struct CompactTop {
   CountedVector<CompactRange> units;  ///< The bits of each unit, in canonical order.
 };
 
-/// Expands the nodes above the units. Calls `poll` now and then; it may throw. Throws Error if the
-/// stream is broken or a level outgrows 32-bit pointers, and OverMemory; `memory` may be null. The
-/// DAG must not be empty.
-CompactTop expand_top(const CompactSvdagView& compact, MemoryBudget* memory,
-                      const std::function<void()>& poll);
+/// Expands the nodes above the units. Throws Error if the stream is broken or a level outgrows
+/// 32-bit pointers, OverMemory and Cancelled. The DAG must not be empty.
+CompactTop expand_top(const CompactSvdagView& compact, Work work);
 
 }  // namespace voxdag

@@ -6,72 +6,31 @@
 #include "voxdag/stored/compact/compact_errors.hpp"
 #include "voxdag/stored/compact/compact_top.hpp"
 #include "voxdag/stored/compact/encode_svdag.hpp"
+#include "voxdag/stored/svdag/unique_cells.hpp"
 
 namespace voxdag {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// Numbers the different leaf blocks in the order in which they are first met.
-class LeafBlocks {
- public:
-  explicit LeafBlocks(MemoryBudget* budget) : slots_(1 << 12, kNone, budget), blocks_(budget) {}
-
-  std::uint32_t number(std::uint64_t block) {
-    for (std::size_t slot = hash(block) & (slots_.size() - 1);;
-         slot = (slot + 1) & (slots_.size() - 1)) {
-      if (slots_[slot] == kNone) {
-        if (blocks_.size() == kNone)
-          throw Error("the DAG has more leaf blocks than 32-bit pointers can address");
-        const auto number = static_cast<std::uint32_t>(blocks_.size());
-        slots_[slot] = number;
-        blocks_.push_back(block);
-        if (blocks_.size() * 2 > slots_.size()) grow();
-        return number;
-      }
-      if (blocks_[slots_[slot]] == block) return slots_[slot];
-    }
-  }
-  const CountedVector<std::uint64_t>& blocks() const { return blocks_; }
-
- private:
-  static std::size_t hash(std::uint64_t x) {
-    x *= 0x9E3779B97F4A7C15ull;
-    x = (x ^ x >> 32) * 0xD6E8FEB86659FD93ull;
-    return static_cast<std::size_t>(x ^ x >> 32);
-  }
-  void grow() {
-    CountedVector<std::uint32_t> wider(slots_.size() * 2, kNone, slots_.get_allocator());
-    for (std::uint32_t n = 0; n < blocks_.size(); ++n) {
-      std::size_t slot = hash(blocks_[n]) & (wider.size() - 1);
-      while (wider[slot] != kNone) slot = (slot + 1) & (wider.size() - 1);
-      wider[slot] = n;
-    }
-    slots_.swap(wider);
-  }
-
-  CountedVector<std::uint32_t> slots_;
-  CountedVector<std::uint64_t> blocks_;
-};
-
 /// Expands the nodes above the units, then reads the units in parallel and appends them in their
 /// order, which is the canonical one.
 class Decoder {
  public:
-  Decoder(const CompactSvdagView& compact, MemoryBudget* memory, Progress* progress)
+  Decoder(const CompactSvdagView& compact, Work work)
       : compact_(compact),
-        memory_(memory),
-        progress_(progress),
+        work_(work),
         levels_(compact.coded_levels()),
-        units_(memory),
-        shared_places_(compact.shared_nodes(levels_ - 3), kNone, memory),
-        leaf_blocks_(memory) {}
+        units_(work.memory),
+        shared_places_(compact.shared_nodes(levels_ - 3), kNone, work.memory),
+        leaf_blocks_(work.memory) {}
 
   Svdag decode() {
-    CompactTop top = expand_top(compact_, memory_, [this] { poll(progress_); });
+    CompactTop top = expand_top(compact_, work_);
     words_ = std::move(top.levels);
     units_ = std::move(top.units);
-    for (int i = 0; i < 2; ++i) words_.emplace_back(memory_);  // of the units and of the bricks
+    for (int i = 0; i < 2; ++i)
+      words_.emplace_back(work_.memory);  // of the units and of the bricks
     read_shared_bricks();
     place_units();
     return assemble();
@@ -94,8 +53,8 @@ class Decoder {
   void read_shared_bricks() {
     const int level = levels_ - 3;
     bricks_.resize(compact_.shared_nodes(level));
-    bricks_memory_ = MemoryReservation(memory_, bricks_.size() * sizeof(Brick));
-    polled_for(bricks_.size(), 1024, progress_, "decode", [&](std::size_t i) {
+    bricks_memory_ = MemoryReservation(work_.memory, bricks_.size() * sizeof(Brick));
+    polled_for(bricks_.size(), 1024, work_, "decode", [&](std::size_t i) {
       const std::uint64_t* first = compact_.brick_first;
       const auto mask =
           static_cast<std::uint32_t>(std::upper_bound(first, first + 257, i) - first - 1);
@@ -109,20 +68,18 @@ class Decoder {
     unit_places_.reserve(units_.size());
     constexpr std::size_t kBatch = 1 << 14;
     std::vector<CompactUnit> batch(std::min(kBatch, units_.size()));
-    const MemoryReservation read(memory_, batch.size() * sizeof(CompactUnit) + units_.size() * 4);
+    const MemoryReservation read(work_.memory,
+                                 batch.size() * sizeof(CompactUnit) + units_.size() * 4);
     for (std::size_t first = 0; first < units_.size(); first += kBatch) {
       const std::size_t count = std::min(kBatch, units_.size() - first);
       parallel_for((count + 255) / 256, [&](std::size_t part) {
-        poll(progress_);
+        work_.poll();
         for (std::size_t i = part * 256; i < std::min(count, part * 256 + 256); ++i)
           if (read_unit(compact_, units_[first + i], batch[i]) != CompactFault::kNone)
             fail_broken_stream();
       });
       for (std::size_t i = 0; i < count; ++i) place_unit(batch[i]);
-      if (progress_ != nullptr)
-        progress_->report("decode",
-                          static_cast<double>(first + count) / static_cast<double>(units_.size()),
-                          first + count);
+      work_.report_done("decode", first + count, units_.size());
     }
   }
 
@@ -150,7 +107,7 @@ class Decoder {
     const std::size_t place = append_mask(levels_ - 3, mask);
     std::uint32_t* word = words_[at(levels_ - 3)].data() + place;
     for (const std::uint64_t leaf : leaves)
-      if (leaf != 0) *++word = leaf_blocks_.number(leaf);
+      if (leaf != 0) *++word = leaf_blocks_.add(leaf);
     return static_cast<std::uint32_t>(place);
   }
 
@@ -162,7 +119,7 @@ class Decoder {
     std::uint64_t total = 0;
     for (int level = missing; level <= levels_ - 3; ++level) total += words_[at(level)].size();
     if (total > kNone - 256) fail_too_large();
-    const MemoryReservation memory(memory_, total * 4 + leaf_blocks_.blocks().size() * 8);
+    const MemoryReservation memory(work_.memory, total * 4 + leaf_blocks_.cells().size() * 8);
     dag.nodes.reserve(total);
     for (int level = missing; level <= levels_ - 3; ++level) {
       CountedVector<std::uint32_t>& words = words_[at(level)];
@@ -182,7 +139,7 @@ class Decoder {
     }
     for (int level = std::max(dag.levels - 2, 0); level <= kMaxLevels; ++level)
       dag.level_begin[at(level)] = dag.nodes.size();
-    dag.leaf_blocks.assign(leaf_blocks_.blocks().begin(), leaf_blocks_.blocks().end());
+    dag.leaf_blocks.assign(leaf_blocks_.cells().begin(), leaf_blocks_.cells().end());
     return dag;
   }
 
@@ -191,8 +148,7 @@ class Decoder {
   };
 
   const CompactSvdagView& compact_;
-  MemoryBudget* memory_;
-  Progress* progress_;
+  Work work_;
   int levels_;  ///< The coded levels.
   std::vector<CountedVector<std::uint32_t>>
       words_;  ///< By level; pointers count from the level's first word.
@@ -201,18 +157,18 @@ class Decoder {
   std::vector<std::uint32_t> unit_places_;
   std::vector<Brick> bricks_;  ///< The shared ones.
   MemoryReservation bricks_memory_;
-  LeafBlocks leaf_blocks_;
+  UniqueCells<std::uint64_t> leaf_blocks_;
 };
 
 }  // namespace
 
-Svdag decode_svdag(const CompactSvdagView& compact, MemoryBudget* memory, Progress* progress) {
+Svdag decode_svdag(const CompactSvdagView& compact, Work work) {
   if (compact.is_empty()) {
     Svdag dag;
     dag.levels = compact.levels;
     return dag;
   }
-  return Decoder(compact, memory, progress).decode();
+  return Decoder(compact, work).decode();
 }
 
 }  // namespace voxdag

@@ -91,17 +91,14 @@ class RecordWriter {
 
 class Encoder {
  public:
-  Encoder(const SvdagView& dag, const CompactOptions& options, Progress* progress)
-      : nodes_(dag, options.memory, progress),
-        memory_(options.memory),
-        progress_(progress),
-        shared_bricks_(memory_) {
-    trees_ = choose_trees(nodes_, options.tables, memory_, progress, coded_);
+  Encoder(const SvdagView& dag, const CompactOptions& options, Work work)
+      : nodes_(dag, work), work_(work), shared_bricks_(work.memory) {
+    trees_ = choose_trees(nodes_, options.tables, work, coded_);
     finder_.emplace(trees_);
     for (const ContextTree& tree : trees_) intervals_.emplace_back(tree);
     for (int level = 0; level <= nodes_.unit_level(); ++level) {
-      records_.emplace_back(memory_);
-      subtree_bits_.emplace_back(memory_);
+      records_.emplace_back(work_.memory);
+      subtree_bits_.emplace_back(work_.memory);
     }
   }
 
@@ -124,7 +121,7 @@ class Encoder {
       coded_.visit(i, [&](const BatchedSymbol& symbol) { out.put(symbol); });
     };
     shared_bricks_.write(
-        bricks.size(), progress_, [&] { return writer(); },
+        bricks.size(), work_, [&] { return writer(); },
         [&](std::size_t i, RecordWriter& out) {
           if (coded_.are_kept())
             put_kept(units.size() + i, out);
@@ -133,7 +130,7 @@ class Encoder {
           out.close();
         });
     records_[at(level)].write(
-        units.size(), progress_, [&] { return writer(); },
+        units.size(), work_, [&] { return writer(); },
         [&](std::size_t i, RecordWriter& out) {
           if (coded_.are_kept())
             put_kept(i, out);
@@ -185,7 +182,7 @@ class Encoder {
   void write_level(int level) {
     const auto& words = nodes_.nodes(level);
     records_[at(level)].write(
-        words.size(), progress_, [&] { return writer(); },
+        words.size(), work_, [&] { return writer(); },
         [&](std::size_t i, RecordWriter& out) { write_node(words[i], level, out); });
     auto& bits = subtree_bits_[at(level)];
     bits.resize(words.size());
@@ -234,7 +231,7 @@ class Encoder {
       for (const std::uint32_t i : nodes_.shared(level)) total += subtree_bits_[at(level)][i];
     const auto& bricks = nodes_.shared(nodes_.brick_level());
     for (std::size_t i = 0; i < bricks.size(); ++i) total += shared_bricks_.bits(i);
-    const MemoryReservation stream(memory_, stream_words(total) * 4);
+    const MemoryReservation stream(work_.memory, stream_words(total) * 4);
 
     BitWriter out;
     out.reserve(total);
@@ -243,7 +240,7 @@ class Encoder {
       const auto& shared = nodes_.shared(level);
       compact.shared_counts.push_back(shared.size());
       for (std::size_t i = 0; i < shared.size(); ++i) {
-        poll_seldom(progress_, i);
+        work_.poll_seldom(i);
         compact.shared_begin.push_back(out.bits());
         if (level == nodes_.brick_level()) {
           shared_bricks_.copy(i, out);
@@ -268,8 +265,7 @@ class Encoder {
   }
 
   NumberedNodes nodes_;
-  MemoryBudget* memory_;
-  Progress* progress_;
+  Work work_;
   CodedSymbols coded_;
   CompactTrees trees_;
   std::optional<TableFinder> finder_;
@@ -281,16 +277,16 @@ class Encoder {
 
 }  // namespace
 
-CompactSvdag encode_svdag(const SvdagView& dag, const CompactOptions& options, Progress* progress) {
+CompactSvdag encode_svdag(const SvdagView& dag, const CompactOptions& options, Work work) {
   CompactSvdag compact;
   if (dag.is_empty()) {
     compact.levels = dag.levels;
     for (ContextTree& tree : compact.trees) tree.prepare();
     return compact;
   }
-  if (dag.levels >= 4) return Encoder(dag, options, progress).encode();
+  if (dag.levels >= 4) return Encoder(dag, options, work).encode();
   const Svdag deeper = in_corner(dag);
-  compact = Encoder(deeper.view(), options, progress).encode();
+  compact = Encoder(deeper.view(), options, work).encode();
   compact.levels = dag.levels;
   return compact;
 }

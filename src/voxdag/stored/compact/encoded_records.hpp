@@ -16,11 +16,10 @@ class EncodedRecords {
   /// Writes `count` records. Each task calls make_writer() for a writer of its own, and
   /// encode(i, writer) for each of its records, which appends record i to writer.bits, a BitWriter.
   template <class MakeWriter, class Encode>
-  void write(std::size_t count, Progress* progress, const MakeWriter& make_writer,
-             const Encode& encode) {
+  void write(std::size_t count, Work work, const MakeWriter& make_writer, const Encode& encode) {
     begins_.resize(count + 1);
     parts_.resize((count + kPart - 1) / kPart);
-    polled_for(parts_.size(), 1, progress, "encode", [&](std::size_t part) {
+    polled_for(parts_.size(), 1, work, "encode", [&](std::size_t part) {
       auto writer = make_writer();
       const std::size_t end = std::min(count, (part + 1) * kPart);
       for (std::size_t i = part * kPart; i < end; ++i) {

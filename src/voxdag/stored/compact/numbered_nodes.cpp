@@ -6,8 +6,8 @@
 
 namespace voxdag {
 
-NumberedNodes::NumberedNodes(const SvdagView& dag, MemoryBudget* budget, const Progress* progress)
-    : dag_(dag), tags_(dag.node_words(), 0, budget), lists_(budget, 0) {
+NumberedNodes::NumberedNodes(const SvdagView& dag, Work work)
+    : dag_(dag), tags_(dag.node_words(), 0, work.memory), lists_(work.memory, 0) {
   nodes_.resize(static_cast<std::size_t>(brick_level()));
   shared_.resize(static_cast<std::size_t>(brick_level()) + 1);
   shared_[0] = {0};
@@ -18,7 +18,7 @@ NumberedNodes::NumberedNodes(const SvdagView& dag, MemoryBudget* budget, const P
     const std::uint64_t above = dag.level_begin[level - 1], begin = dag.level_begin[level],
                         end = dag.level_begin[level + 1];
     for (std::uint64_t at = above; at < begin;) {
-      poll_seldom(progress, at);
+      work.poll_seldom(at);
       const int children = popcount(dag.nodes[at]);
       for (int i = 1; i <= children; ++i) {
         std::uint32_t& pointers = tags_[dag.nodes[at + static_cast<unsigned>(i)]];
@@ -42,7 +42,7 @@ NumberedNodes::NumberedNodes(const SvdagView& dag, MemoryBudget* budget, const P
     if (level <= unit_level()) nodes_[index(level)].reserve(nodes);
     for (std::uint64_t at = begin; at < end;
          at += static_cast<unsigned>(1 + popcount(dag.nodes[at]))) {
-      poll_seldom(progress, at);
+      work.poll_seldom(at);
       const auto word = static_cast<std::uint32_t>(at);
       if (tags_[at] > 1) order.push_back(word);
       if (level <= unit_level()) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
@@ -15,8 +15,8 @@ namespace voxdag {
 class NumberedNodes {
  public:
   /// Counts the pointers to each node. O(DAG) time; 4 bytes of memory per word of the DAG and 4 per
-  /// node. Throws OverMemory and Cancelled; `budget` and `progress` may be null.
-  NumberedNodes(const SvdagView& dag, MemoryBudget* budget, const Progress* progress);
+  /// node. Throws OverMemory and Cancelled.
+  NumberedNodes(const SvdagView& dag, Work work);
 
   const SvdagView& dag() const { return dag_; }
   int unit_level() const { return dag_.levels - 4; }

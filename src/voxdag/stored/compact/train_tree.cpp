@@ -75,8 +75,8 @@ struct GrowingNode {
 
 class TreeGrower {
  public:
-  TreeGrower(std::span<ContextSample> samples, const TreeLimits& limits, const Progress* progress)
-      : samples_(samples), limits_(limits), progress_(progress) {
+  TreeGrower(std::span<ContextSample> samples, const TreeLimits& limits, Work work)
+      : samples_(samples), limits_(limits), work_(work) {
     for (auto& counts : counts_) counts = std::make_unique<Counts>();
   }
 
@@ -89,7 +89,7 @@ class TreeGrower {
       return a.gain != b.gain ? a.gain < b.gain : a.node > b.node;
     };
     for (int tables = 1; tables < limits_.tables && !leaves.empty(); ++tables) {
-      poll(progress_);
+      work_.poll();
       std::pop_heap(leaves.begin(), leaves.end(), less);
       const Leaf leaf = leaves.back();
       leaves.pop_back();
@@ -195,16 +195,15 @@ class TreeGrower {
 
   std::span<ContextSample> samples_;
   const TreeLimits& limits_;
-  const Progress* progress_;
+  Work work_;
   std::vector<GrowingNode> nodes_;
   std::unique_ptr<Counts> counts_[2];
 };
 
 }  // namespace
 
-ContextTree train_tree(std::span<ContextSample> samples, const TreeLimits& limits,
-                       const Progress* progress) {
-  return TreeGrower(samples, limits, progress).grow();
+ContextTree train_tree(std::span<ContextSample> samples, const TreeLimits& limits, Work work) {
+  return TreeGrower(samples, limits, work).grow();
 }
 
 }  // namespace voxdag

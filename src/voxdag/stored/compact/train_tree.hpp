@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/compact/context_tree.hpp"
 
 namespace voxdag {
@@ -27,8 +27,7 @@ struct TreeLimits {
 };
 
 /// Returns a tree without frequencies. Reorders the samples. The result depends on the set of
-/// samples alone. Runs on the current TBB arena; throws Cancelled. `progress` may be null.
-ContextTree train_tree(std::span<ContextSample> samples, const TreeLimits& limits,
-                       const Progress* progress);
+/// samples alone. Runs on the current TBB arena; throws Cancelled.
+ContextTree train_tree(std::span<ContextSample> samples, const TreeLimits& limits, Work work);
 
 }  // namespace voxdag

@@ -2,7 +2,7 @@
 /// The wire form of pages of cells: a quarter smaller or more, lossless, but without random access.
 ///
 /// It codes the blocks or runs of pages one after the other, each field in a context of those
-/// before it (value_model.hpp, material_model.hpp). Every 1024 pages are a segment, which begins
+/// before it (ValueModel, MaterialModel). Every 1024 pages are a segment, which begins
 /// with fresh contexts.
 #include <cstddef>
 #include <cstdint>

@@ -105,7 +105,7 @@ float openSky(vec3 start, vec3 normal, vec3 face, float cell_side, PixelSamples 
   return float(open) / float(u_occlusion_samples);
 }
 
-// The colour scale of render/heat_map.hpp: from black over blue, red and yellow to white.
+// The colour scale of render/film/picture_pass.cpp: from black over blue, red and yellow to white.
 vec3 heat(float value) {
   float v = clamp(value, 0.0, 1.0);
   float angle = 6.2831853 * (0.5 / 3.0 + 1.0 - 1.2 * v);

@@ -12,7 +12,7 @@ bool needs_blocks(const EsvoTree& tree) {
 void BlockAssembler::add(FinishedTask& task) {
   if (task.has_blocks) {
     keep_packed_root(task.voxel.tree, append(task.blocks));
-    task.voxel.count_tree(options_.memory);
+    task.voxel.count_tree(memory_);
   }
   arrive(task.cell, std::move(task.voxel));
 }
@@ -56,14 +56,14 @@ void BlockAssembler::arrive(std::size_t cell, BuiltVoxel&& voxel) {
     parent.built[static_cast<std::size_t>(top->child)] = std::move(voxel);
     if (--parent.children_left > 0) return;
     voxel = join_children(parent.decision, std::span<BuiltVoxel, 8>(parent.built),
-                          options_.settings.attributes, options_.memory);
+                          options_.settings.attributes, memory_);
     parent.built = std::vector<BuiltVoxel>();
     top = &parent;
     if (voxel.exists && top->parent != TopCell::kNoParent && needs_blocks(voxel.tree)) {
       const PackedBlocks blocks =
           pack_blocks(voxel.tree, top->level, top->cell, position_, options_.pack);
       keep_packed_root(voxel.tree, append(blocks));
-      voxel.count_tree(options_.memory);
+      voxel.count_tree(memory_);
     }
   }
   root_ = std::move(voxel);

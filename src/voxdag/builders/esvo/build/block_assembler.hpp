@@ -23,8 +23,8 @@ bool needs_blocks(const EsvoTree& tree);
 class BlockAssembler {
  public:
   /// Refers to its arguments, and finishes the cells.
-  BlockAssembler(TopCells& cells, const EsvoOptions& options, EsvoSink& sink)
-      : cells_(cells), options_(options), sink_(sink) {}
+  BlockAssembler(TopCells& cells, const EsvoOptions& options, EsvoSink& sink, MemoryBudget* memory)
+      : cells_(cells), options_(options), sink_(sink), memory_(memory) {}
 
   /// Takes the tasks in Morton order.
   void add(FinishedTask& task);
@@ -39,6 +39,7 @@ class BlockAssembler {
   TopCells& cells_;
   const EsvoOptions& options_;
   EsvoSink& sink_;
+  MemoryBudget* const memory_;
   std::uint64_t position_ = 0;
   EsvoResult result_;
   BuiltVoxel root_;

@@ -4,7 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include "voxdag/builders/esvo/build/block_assembler.hpp"
-#include "voxdag/builders/esvo/build/cell_scratch.hpp"
+#include "voxdag/builders/esvo/build/decide_cell.hpp"
 #include "voxdag/builders/esvo/build/open_edges.hpp"
 #include "voxdag/builders/esvo/build/subtree_builder.hpp"
 #include "voxdag/builders/esvo/build/top_cells.hpp"
@@ -20,13 +20,14 @@ namespace {
 class TaskBuilder {
  public:
   TaskBuilder(const TriangleSource& source, const EsvoOptions& options,
-              const SurfaceShading* shading, TopCells& cells)
+              const SurfaceShading* shading, TopCells& cells, MemoryBudget* memory)
       : source_(source),
         options_(options),
+        memory_(memory),
         appearance_(options.settings, shading),
         cells_(cells),
-        gate_(options.memory),
-        scratch_([this] { return CellScratch(options_.settings, appearance_, options_.memory); }) {}
+        gate_(memory),
+        scratch_([this] { return CellScratch(options_.settings, appearance_, memory_); }) {}
 
   /// Builds a task and frees its triangles.
   FinishedTask build(std::size_t task) {
@@ -42,16 +43,16 @@ class TaskBuilder {
       cell.decision = scratch.decider.decide(scratch.pieces.view(root),
                                              cells_[cell.parent].decision.is_near, cell.shape, sum);
     }
-    cell.triangles = TriangleList(options_.memory);
+    cell.triangles = TriangleList(memory_);
     finished.cell = task;
     finished.voxel = SubtreeBuilder(options_.settings, appearance_, scratch.decider, scratch.pieces)
                          .build(cell.decision, cell.shape);
     scratch.pieces.finish();
-    finished.voxel.count_tree(options_.memory);
+    finished.voxel.count_tree(memory_);
     const EsvoTree& tree = finished.voxel.tree;
     finished.has_blocks = needs_blocks(tree);
     if (!finished.has_blocks) return finished;
-    finished.block_memory = {options_.memory, packed_slots(tree) * kPackingBytesPerSlot};
+    finished.block_memory = {memory_, packed_slots(tree) * kPackingBytesPerSlot};
     finished.blocks = pack_blocks(tree, cell.level, cell.cell, 0, options_.pack);
     finished.block_memory.resize(finished.blocks.slots.capacity() * sizeof(std::uint64_t));
     return finished;
@@ -73,6 +74,7 @@ class TaskBuilder {
 
   const TriangleSource& source_;
   const EsvoOptions& options_;
+  MemoryBudget* const memory_;
   const CellAppearance appearance_;
   TopCells& cells_;
   MemoryGate gate_;
@@ -83,45 +85,43 @@ class TaskBuilder {
 
 EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options,
                       const SurfaceShading* shading, const DisplacedTriangles* displaced,
-                      EsvoSink& sink, Progress* progress) {
-  MemoryBudget* const memory = options.memory;
+                      EsvoSink& sink, Work work) {
+  MemoryBudget* const memory = work.memory;
   const std::uint64_t table_bytes =
       45 * std::uint64_t{mesh.triangles.size()} + 12 * std::uint64_t{mesh.vertices.size()};
   if (memory != nullptr && memory->left() < table_bytes)
     memory->throw_over_memory(memory->base() + memory->used() + table_bytes);
-  const QuantizedMesh quantized(mesh, grid, memory, progress);
+  const QuantizedMesh quantized(mesh, grid, work);
   const MemoryReservation tables(memory, 2 * quantized.triangle_count());
   const Appearance* const appearance = shading != nullptr     ? &shading->appearance()
                                        : displaced != nullptr ? &displaced->appearance()
                                                               : nullptr;
-  const IndexSet duplicates = find_duplicate_surfaces(mesh, appearance, progress, memory);
-  const std::vector<std::uint8_t> open_edges =
-      find_open_edges(quantized, duplicates, progress, memory);
+  const IndexSet duplicates = find_duplicate_surfaces(mesh, appearance, work);
+  const std::vector<std::uint8_t> open_edges = find_open_edges(quantized, duplicates, work);
   const TriangleSource source{grid, quantized, open_edges, displaced, duplicates};
-  TopCells cells = find_top_cells(source, options.settings, shading, progress, memory);
+  TopCells cells = find_top_cells(source, options.settings, shading, work);
   const std::vector<std::size_t> tasks = task_order(cells);
   double total_weight = 0, weight_so_far = 0;
   for (const std::size_t task : tasks) total_weight += cells[task].weight;
 
-  TaskBuilder builder(source, options, shading, cells);
-  BlockAssembler assembler(cells, options, sink);
+  TaskBuilder builder(source, options, shading, cells, memory);
+  BlockAssembler assembler(cells, options, sink, memory);
   ordered_pipeline(
-      tasks.size(), 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()), progress,
+      tasks.size(), 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()), work,
       [&](std::size_t i) { return builder.build(tasks[i]); },
       [&](FinishedTask& finished) {
         weight_so_far += cells[finished.cell].weight;
         assembler.add(finished);
-        if (progress != nullptr)
-          progress->report(options.stage, weight_so_far / total_weight,
-                           static_cast<std::uint64_t>(weight_so_far));
+        work.report(options.stage, weight_so_far / total_weight,
+                    static_cast<std::uint64_t>(weight_so_far));
       });
   return assembler.finish();
 }
 
 Esvo build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options,
-                const SurfaceShading* shading, Progress* progress) {
-  EsvoMemory memory(options.memory);
-  const EsvoResult result = build_esvo(mesh, grid, options, shading, nullptr, memory, progress);
+                const SurfaceShading* shading, Work work) {
+  EsvoMemory memory(work.memory);
+  const EsvoResult result = build_esvo(mesh, grid, options, shading, nullptr, memory, work);
   return {memory.take(), result.root, grid.levels};
 }
 

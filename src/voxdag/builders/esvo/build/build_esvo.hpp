@@ -18,7 +18,7 @@
 #include "voxdag/builders/esvo/encode/pack_blocks.hpp"
 #include "voxdag/core/grid.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/displace/displaced_triangles.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
@@ -28,7 +28,6 @@ namespace voxdag {
 struct EsvoOptions {
   EsvoSettings settings;
   PackOptions pack;
-  MemoryBudget* memory = nullptr;     ///< Counts the builder's memory. Null: no limit.
   std::string_view stage = "octree";  ///< The name of the work for Progress.
 };
 
@@ -43,7 +42,7 @@ class EsvoSink {
 /// A sink that keeps the blocks in memory.
 class EsvoMemory : public EsvoSink {
  public:
-  /// Counts the blocks in `budget`; null: no limit.
+  /// Counts the blocks in `budget`.
   explicit EsvoMemory(MemoryBudget* budget = nullptr) : memory_(budget, 0) {}
 
   void append(std::span<const std::uint64_t> slots) override {
@@ -82,10 +81,10 @@ struct EsvoResult {
 /// octree is too large for far pointers (16 GiB), Cancelled, and whatever the sink throws.
 EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options,
                       const SurfaceShading* shading, const DisplacedTriangles* displaced,
-                      EsvoSink& sink, Progress* progress = nullptr);
+                      EsvoSink& sink, Work work = {});
 
 /// Builds an octree in memory, without displacement.
 Esvo build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options = {},
-                const SurfaceShading* shading = nullptr, Progress* progress = nullptr);
+                const SurfaceShading* shading = nullptr, Work work = {});
 
 }  // namespace voxdag

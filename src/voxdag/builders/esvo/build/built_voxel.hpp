@@ -18,12 +18,12 @@ struct BuiltVoxel {
   EsvoTree tree;             ///< Node 0 is the voxel; empty if the voxel is a leaf.
   MemoryReservation memory;  ///< Memory of the tree.
 
-  /// Counts the tree in a budget (null: no limit). Throws OverMemory.
+  /// Counts the tree in a budget. Throws OverMemory.
   void count_tree(MemoryBudget* budget);
 };
 
-/// Joins the eight children of a voxel, in order, to the voxel. Consumes the children.
-/// Counts the tree in `budget`; null: no limit. Throws OverMemory.
+/// Joins the eight children of a voxel, in order, to the voxel. Consumes the children. Counts the
+/// tree in `budget`. Throws OverMemory.
 BuiltVoxel join_children(const CellDecision& decision, std::span<BuiltVoxel, 8> children,
                          bool attributes, MemoryBudget* budget = nullptr);
 

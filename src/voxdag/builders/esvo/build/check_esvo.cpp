@@ -70,7 +70,7 @@ struct Walk {
 
 EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, const Grid& grid,
                                const SurfaceShading* shading, const DisplacedTriangles* displaced,
-                               std::uint64_t samples, std::uint64_t seed, Progress* progress) {
+                               std::uint64_t samples, std::uint64_t seed, Work work) {
   const std::size_t count = mesh.triangle_count();
   std::vector<double> area_before(count + 1);
   const auto corners = [&](std::size_t i, Vec3d(&p)[3]) {
@@ -148,10 +148,8 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, 
   for (std::uint64_t left = samples; left > 0;) {
     const std::uint64_t begin = samples - left, now = std::min(left, kSamplesAtOnce);
     left -= now;
-    if (progress != nullptr) {
-      progress->throw_if_cancelled();
-      progress->report("enclosure", static_cast<double>(begin) / static_cast<double>(samples));
-    }
+    work.poll();
+    work.report("enclosure", static_cast<double>(begin) / static_cast<double>(samples));
     parallel_for(now, 1024, [&](std::size_t i) { look_at(begin + i); });
   }
   result.points = looked_at;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/displace/displaced_triangles.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
 #include "voxdag/stored/esvo/esvo.hpp"
@@ -27,11 +28,10 @@ struct EnclosureCheck {
 /// corners in turn. The octree must contain each point: in voxels and between the planes of their
 /// contours, down to a leaf. Voxels are widened by 1e-6 of a voxel for this test. Skips points
 /// outside the grid, and points that `shading` masks away by alpha. If `displaced` is not null,
-/// takes the points from the displaced surface, tessellated as for building. `shading`, `displaced`
-/// and `progress` may be null. The result depends on the arguments alone.
+/// takes the points from the displaced surface, tessellated as for building. `shading` and
+/// `displaced` may be null. The result depends on the arguments alone.
 EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, const Grid& grid,
                                const SurfaceShading* shading, const DisplacedTriangles* displaced,
-                               std::uint64_t samples, std::uint64_t seed = 1,
-                               Progress* progress = nullptr);
+                               std::uint64_t samples, std::uint64_t seed = 1, Work work = {});
 
 }  // namespace voxdag

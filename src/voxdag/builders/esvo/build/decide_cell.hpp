@@ -13,6 +13,7 @@
 #include "voxdag/builders/esvo/shape/convex_polyhedron.hpp"
 #include "voxdag/builders/esvo/shape/fit_contour.hpp"
 #include "voxdag/builders/esvo/shape/near_surface.hpp"
+#include "voxdag/builders/pieces/piece_stack.hpp"
 #include "voxdag/stored/esvo/contour.hpp"
 
 namespace voxdag {
@@ -54,6 +55,15 @@ class CellDecider {
   const EsvoSettings& settings_;
   const CellAppearance& appearance_;
   std::vector<PlanarPolygon> polygons_;  // The polygons of the current cell.
+};
+
+/// The scratch memory that each thread needs to decide and build cells.
+struct CellScratch {
+  CellScratch(const EsvoSettings& settings, const CellAppearance& appearance, MemoryBudget* memory)
+      : pieces(memory), decider(settings, appearance) {}
+
+  PieceStack pieces;
+  CellDecider decider;
 };
 
 }  // namespace voxdag

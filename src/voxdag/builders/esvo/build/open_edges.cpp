@@ -25,15 +25,15 @@ std::uint64_t edge_key(Vec3i a, Vec3i b) {
 }  // namespace
 
 std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh, const IndexSet& ignored,
-                                          Progress* progress, MemoryBudget* memory) {
+                                          Work work) {
   const std::size_t count = mesh.triangle_count();
   const auto counts = [&](std::size_t i) {
     return mesh.in_range(i) && !ignored.contains(mesh.source(i));
   };
   // The upper half of an edge's key and its number, 3 * triangle + edge. Triangles that do not
   // count get equal keys for all edges, so none of their edges is open.
-  CountedVector<std::uint64_t> edges(3 * count, memory);
-  polled_for(count, 4096, progress, "edges", [&](std::size_t i) {
+  CountedVector<std::uint64_t> edges(3 * count, work.memory);
+  polled_for(count, 4096, work, "edges", [&](std::size_t i) {
     const QuantizedTriangle t = counts(i) ? mesh.triangle(i) : QuantizedTriangle{};
     for (int e = 0; e < 3; ++e) {
       const std::size_t edge = 3 * i + static_cast<std::size_t>(e);
@@ -41,11 +41,10 @@ std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh, const Index
     }
   });
   const auto report = [&](double fraction) {
-    if (progress == nullptr) return;
-    progress->throw_if_cancelled();
-    progress->report("open edges", fraction, count);
+    work.poll();
+    work.report("open edges", fraction, count);
   };
-  polled_sort(edges.begin(), edges.end(), progress);
+  polled_sort(edges.begin(), edges.end(), work);
   std::vector<std::uint8_t> open(count);
   const auto is_same = [&](std::size_t i, std::size_t j) {
     return edges[i] >> 32 == edges[j] >> 32;

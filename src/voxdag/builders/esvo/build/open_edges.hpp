@@ -6,7 +6,6 @@
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/parallel/find_duplicates.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 
@@ -14,10 +13,8 @@ namespace voxdag {
 /// between the same two points as its edge from corner e to the next. Points are the same if they
 /// are rounded to the same 1/256 voxel. Pieces of clipped triangles have no open edges. Triangles
 /// in `ignored` (indices of the mesh's triangles) do not count. Counts 24 bytes per triangle of
-/// scratch memory in `memory`; null: no limit. Throws Cancelled and OverMemory.
+/// scratch memory in `work`. Throws Cancelled and OverMemory.
 std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh,
-                                          const IndexSet& ignored = IndexSet(),
-                                          Progress* progress = nullptr,
-                                          MemoryBudget* memory = nullptr);
+                                          const IndexSet& ignored = IndexSet(), Work work = {});
 
 }  // namespace voxdag

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "voxdag/builders/esvo/build/cell_scratch.hpp"
+#include "voxdag/builders/esvo/build/decide_cell.hpp"
 #include "voxdag/builders/esvo/build/enclose_cell.hpp"
 #include "voxdag/builders/pieces/load_pieces.hpp"
 #include "voxdag/builders/pieces/memory_gate.hpp"
@@ -43,19 +43,18 @@ class TopCellFinder {
     cells_[0].triangles = triangles_of_grid(source, memory);
   }
 
-  TopCells find(Progress* progress) {
+  TopCells find(Work work) {
     for (std::size_t begin = 0; begin < cells_.size();) {
       const std::size_t end = cells_.size();
       std::vector<ChildTriangles> children(end - begin, empty_children(memory_));
       std::atomic<std::size_t> done{0};
       parallel_for(end - begin, [&](std::size_t i) {
-        if (progress != nullptr && progress->cancelled()) return;
+        if (work.cancelled()) return;
         decide(cells_[begin + i], children[i]);
-        if (progress != nullptr)
-          progress->report("upper levels",
-                           static_cast<double>(++done) / static_cast<double>(end - begin), end);
+        work.report("upper levels", static_cast<double>(++done) / static_cast<double>(end - begin),
+                    end);
       });
-      if (progress != nullptr) progress->throw_if_cancelled();
+      work.poll();
       for (std::size_t at = begin; at < end; ++at)
         if (!cells_[at].is_task) add_children(at, children[at - begin]);
       begin = end;
@@ -148,9 +147,8 @@ class TopCellFinder {
 }  // namespace
 
 TopCells find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
-                        const SurfaceShading* shading, Progress* progress, MemoryBudget* memory,
-                        std::size_t most_loaded) {
-  return TopCellFinder(source, settings, shading, memory, most_loaded).find(progress);
+                        const SurfaceShading* shading, Work work, std::size_t most_loaded) {
+  return TopCellFinder(source, settings, shading, work.memory, most_loaded).find(work);
 }
 
 std::vector<std::size_t> task_order(const TopCells& cells) {

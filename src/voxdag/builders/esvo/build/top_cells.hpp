@@ -6,7 +6,7 @@
 #include "voxdag/builders/esvo/build/built_voxel.hpp"
 #include "voxdag/builders/pieces/child_triangles.hpp"
 #include "voxdag/builders/pieces/triangle_source.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -36,11 +36,11 @@ inline constexpr std::size_t kMaxLoaded = 1 << 14;
 /// never a leaf. Small cells with displaced triangles are tasks; larger ones get contours around
 /// volumes that enclose the triangles. Cells larger than 4³ voxels with more than `most_loaded`
 /// triangles get the contours that they would get if they were loaded, but are never leaves and
-/// never near the surface (CellDecision::is_near). Counts the cells and scratch memory in `memory`;
-/// null: no limit. Throws Cancelled and OverMemory.
+/// never near the surface (CellDecision::is_near). Counts the cells and scratch memory in `work`.
+/// Throws Cancelled and OverMemory.
 TopCells find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
-                        const SurfaceShading* shading, Progress* progress,
-                        MemoryBudget* memory = nullptr, std::size_t most_loaded = kMaxLoaded);
+                        const SurfaceShading* shading, Work work,
+                        std::size_t most_loaded = kMaxLoaded);
 
 /// Returns the tasks in Morton order.
 std::vector<std::size_t> task_order(const TopCells& cells);

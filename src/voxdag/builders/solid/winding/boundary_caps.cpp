@@ -5,7 +5,7 @@
 
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/core/parallel/polled_sort.hpp"
-#include "voxdag/core/vec_order.hpp"
+#include "voxdag/core/vec.hpp"
 
 namespace voxdag {
 namespace {
@@ -13,15 +13,15 @@ namespace {
 /// Walks along the boundary, and cuts off a loop whenever it comes to a point for a second time.
 class LoopCutter {
  public:
-  LoopCutter(CountedVector<BoundaryEdge> edges, MemoryBudget* memory, Progress* progress)
+  LoopCutter(CountedVector<BoundaryEdge> edges, Work work)
       : edges_(std::move(edges)),
-        points_(memory),
-        next_edge_(memory),
-        place_(memory),
-        path_(memory),
-        caps_(memory),
-        progress_(progress) {
-    polled_sort(edges_.begin(), edges_.end(), progress,
+        points_(work.memory),
+        next_edge_(work.memory),
+        place_(work.memory),
+        path_(work.memory),
+        caps_(work.memory),
+        work_(work) {
+    polled_sort(edges_.begin(), edges_.end(), work,
                 [](const BoundaryEdge& e, const BoundaryEdge& f) {
                   return e.a != f.a ? is_before(e.a, f.a) : is_before(e.b, f.b);
                 });
@@ -35,7 +35,7 @@ class LoopCutter {
 
   PageVector<QuantizedTriangle> run() {
     for (std::size_t start = 0; start < points_.size(); ++start) {
-      poll_seldom(progress_, start);
+      work_.poll_seldom(start);
       walk_from(start);
     }
     return std::move(caps_);
@@ -104,14 +104,13 @@ class LoopCutter {
   CountedVector<std::size_t> place_;      ///< Of each point on the path.
   CountedVector<std::size_t> path_;       ///< Points.
   PageVector<QuantizedTriangle> caps_;
-  Progress* progress_;
+  Work work_;
 };
 
 }  // namespace
 
-PageVector<QuantizedTriangle> cap_boundary(CountedVector<BoundaryEdge> boundary,
-                                           MemoryBudget* memory, Progress* progress) {
-  return LoopCutter(std::move(boundary), memory, progress).run();
+PageVector<QuantizedTriangle> cap_boundary(CountedVector<BoundaryEdge> boundary, Work work) {
+  return LoopCutter(std::move(boundary), work).run();
 }
 
 }  // namespace voxdag

@@ -21,13 +21,11 @@ struct Balance {
 
 }  // namespace
 
-CountedVector<BoundaryEdge> find_boundary_edges(const QuantizedMesh& mesh, MemoryBudget* memory,
-                                                Progress* progress) {
+CountedVector<BoundaryEdge> find_boundary_edges(const QuantizedMesh& mesh, Work work) {
   // The key of each edge, and in the last bit whether it runs backwards.
-  PageVector<std::uint64_t> edges = sorted_edge_keys(mesh, memory, progress, [](Vec3i a, Vec3i b) {
-    return key_of(a, b) << 1 | (is_before(a, b) ? 0u : 1u);
-  });
-  CountedVector<Balance> open(memory);
+  PageVector<std::uint64_t> edges = sorted_edge_keys(
+      mesh, work, [](Vec3i a, Vec3i b) { return key_of(a, b) << 1 | (is_before(a, b) ? 0u : 1u); });
+  CountedVector<Balance> open(work.memory);
   for (std::size_t i = 0; i < edges.size() && edges[i] != kNoEdge;) {
     Balance balance{edges[i] >> 1, 0};
     for (; i < edges.size() && edges[i] >> 1 == balance.key; ++i)
@@ -36,10 +34,10 @@ CountedVector<BoundaryEdge> find_boundary_edges(const QuantizedMesh& mesh, Memor
   }
   edges.release();
 
-  CountedVector<BoundaryEdge> boundary(memory);
+  CountedVector<BoundaryEdge> boundary(work.memory);
   boundary.reserve(open.size());
   for (std::size_t i = 0; i < mesh.mesh_triangle_count() && boundary.size() < open.size(); ++i) {
-    poll_seldom(progress, i);
+    work.poll_seldom(i);
     each_edge(mesh, i, [&](Vec3i a, Vec3i b) {
       const std::uint64_t key = key_of(a, b);
       const auto found =

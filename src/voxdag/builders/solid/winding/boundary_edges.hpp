@@ -4,7 +4,7 @@
 
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -17,8 +17,7 @@ struct BoundaryEdge {
 /// Returns the boundary. Every point is the end of as many edges as begin there. A closed mesh
 /// whose triangles are wound alike has none. Points are the same if they are rounded to the same
 /// 1/256 voxel; triangles that the grid's range clips do not count. Takes 24 bytes per triangle in
-/// `memory`. Throws OverMemory and Cancelled; `memory` and `progress` may be null.
-CountedVector<BoundaryEdge> find_boundary_edges(const QuantizedMesh& mesh, MemoryBudget* memory,
-                                                Progress* progress);
+/// `work`. Throws OverMemory and Cancelled.
+CountedVector<BoundaryEdge> find_boundary_edges(const QuantizedMesh& mesh, Work work);
 
 }  // namespace voxdag

@@ -24,10 +24,9 @@ double distance_to(const BoundaryEdge& edge, Vec3d point) {
 
 }  // namespace
 
-EdgeTree::EdgeTree(const CountedVector<BoundaryEdge>& boundary, MemoryBudget* memory,
-                   Progress* progress)
-    : edges_(memory), nodes_(memory) {
-  sort_by_place(boundary, edges_, memory, progress, [](const BoundaryEdge& edge) {
+EdgeTree::EdgeTree(const CountedVector<BoundaryEdge>& boundary, Work work)
+    : edges_(work.memory), nodes_(work.memory) {
+  sort_by_place(boundary, edges_, work, [](const BoundaryEdge& edge) {
     return (static_cast<Vec3d>(edge.a) + static_cast<Vec3d>(edge.b)) * 0.5;
   });
   if (!edges_.empty()) add_node(0, edges_.size());

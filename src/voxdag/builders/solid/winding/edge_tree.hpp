@@ -2,6 +2,7 @@
 /// How fast a winding number can change, from the boundary of the surface.
 #include "voxdag/builders/solid/winding/boundary_edges.hpp"
 #include "voxdag/core/page_vector.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -10,8 +11,8 @@ namespace voxdag {
 /// winding number changes by a whole number and its gradient does not change.
 class EdgeTree {
  public:
-  /// Throws OverMemory and Cancelled; `memory` and `progress` may be null.
-  EdgeTree(const CountedVector<BoundaryEdge>& boundary, MemoryBudget* memory, Progress* progress);
+  /// Throws OverMemory and Cancelled.
+  EdgeTree(const CountedVector<BoundaryEdge>& boundary, Work work);
 
   bool is_empty() const { return edges_.empty(); }
   /// Returns a bound on the length of the gradient, per 1/256 voxel, in the ball of `radius` around

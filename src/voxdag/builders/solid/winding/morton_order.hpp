@@ -12,10 +12,10 @@
 namespace voxdag {
 
 /// Fills `sorted` with the items in the Morton order of place_of(item). Throws OverMemory and
-/// Cancelled; `memory` and `progress` may be null.
+/// Cancelled.
 template <class Items, class Item, class PlaceOf>
-void sort_by_place(const Items& items, PageVector<Item>& sorted, MemoryBudget* memory,
-                   Progress* progress, const PlaceOf& place_of) {
+void sort_by_place(const Items& items, PageVector<Item>& sorted, Work work,
+                   const PlaceOf& place_of) {
   struct Key {
     std::uint64_t code;
     std::size_t item;
@@ -30,13 +30,13 @@ void sort_by_place(const Items& items, PageVector<Item>& sorted, MemoryBudget* m
   }
   const Vec3d extent = hi - lo;
   const double scale = ((1 << 21) - 1) / std::max({extent.x, extent.y, extent.z, 1.0});
-  PageVector<Key> keys(memory);
+  PageVector<Key> keys(work.memory);
   keys.resize(items.size());
   for (std::size_t i = 0; i < items.size(); ++i) {
-    poll_seldom(progress, i);
+    work.poll_seldom(i);
     keys[i] = {morton_encode(static_cast<Vec3i>((place_of(items[i]) - lo) * scale)), i};
   }
-  polled_sort(keys.begin(), keys.end(), progress);
+  polled_sort(keys.begin(), keys.end(), work);
   sorted.resize(items.size());
   for (std::size_t i = 0; i < items.size(); ++i) sorted[i] = items[keys[i].item];
 }

@@ -1,5 +1,6 @@
 #pragma once
-/// The generalised winding number of a mesh at voxels.
+/// The generalised winding number of a mesh at voxels, and the voxels at which the inside of a mesh
+/// with holes ends without a surface.
 ///
 /// Source: Jacobson, Kavan and Sorkine-Hornung, "Robust Inside-Outside Segmentation using
 /// Generalized Winding Numbers", SIGGRAPH 2013. It tells how often the surface winds around a
@@ -12,6 +13,9 @@
 
 #include "voxdag/builders/solid/winding/edge_tree.hpp"
 #include "voxdag/builders/solid/winding/winding_tree.hpp"
+#include "voxdag/core/page_vector.hpp"
+#include "voxdag/core/parallel/work.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 
@@ -19,17 +23,14 @@ class WindingField {
  public:
   /// A voxel is inside if the absolute winding number at its centre is at least `threshold`, which
   /// is positive. All triangles of the mesh, which must outlive this object, must be in range.
-  /// Throws OverMemory and Cancelled; `memory` and `progress` may be null.
-  WindingField(const QuantizedMesh& mesh, double threshold, MemoryBudget* memory,
-               Progress* progress)
-      : WindingField(mesh, find_boundary_edges(mesh, memory, progress), threshold, memory,
-                     progress) {}
+  /// Throws OverMemory and Cancelled.
+  WindingField(const QuantizedMesh& mesh, double threshold, Work work)
+      : WindingField(mesh, find_boundary_edges(mesh, work), threshold, work) {}
 
   /// Returns whether each voxel is inside; no triangle may meet these voxels. Voxels whose winding
   /// number is within 1e-8 of the threshold may be on either side. Time grows with the triangles,
   /// and with the voxels that lie behind each of them along x. Throws OverMemory and Cancelled.
-  std::vector<bool> are_inside(std::span<const Vec3i> voxels, MemoryBudget* memory,
-                               Progress* progress) const;
+  std::vector<bool> are_inside(std::span<const Vec3i> voxels, Work work) const;
 
   /// Returns whether two voxels in a cell of 2^log2_side voxels a side that are connected through
   /// voxels that no triangle meets can be on different sides. `cell` is its place, in cells.
@@ -37,7 +38,7 @@ class WindingField {
 
  private:
   WindingField(const QuantizedMesh& mesh, CountedVector<BoundaryEdge> boundary, double threshold,
-               MemoryBudget* memory, Progress* progress);
+               Work work);
 
   bool is_inside(Vec3d point, std::int32_t of_closed) const;
 
@@ -46,5 +47,11 @@ class WindingField {
   WindingTree caps_;
   double threshold_;
 };
+
+/// Returns the Morton codes, in ascending order, of voxels that are not in `cover`, such that all
+/// voxels of a connected set of the other voxels that are not in `cover` are inside, or none is.
+/// They form sheets over the holes: time and memory grow with the sheets and the boundary. `cover`
+/// must be the DAG of the mesh. Throws OverMemory and Cancelled.
+PageVector<std::uint64_t> find_sheets(const WindingField& field, const SvdagView& cover, Work work);
 
 }  // namespace voxdag

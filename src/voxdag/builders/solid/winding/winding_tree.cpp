@@ -61,10 +61,9 @@ struct WindingTree::Sums {
   Vec3d lo, hi;       ///< Bounding box.
 };
 
-WindingTree::WindingTree(PageVector<QuantizedTriangle> triangles, MemoryBudget* memory,
-                         Progress* progress)
-    : triangles_(memory), nodes_(memory) {
-  sort_by_place(triangles, triangles_, memory, progress, [](const QuantizedTriangle& t) {
+WindingTree::WindingTree(PageVector<QuantizedTriangle> triangles, Work work)
+    : triangles_(work.memory), nodes_(work.memory) {
+  sort_by_place(triangles, triangles_, work, [](const QuantizedTriangle& t) {
     return (static_cast<Vec3d>(t.x) + static_cast<Vec3d>(t.y) + static_cast<Vec3d>(t.z)) *
            (1.0 / 3);
   });

@@ -8,7 +8,7 @@
 
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/page_vector.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -19,9 +19,8 @@ struct WindingValue {
 
 class WindingTree {
  public:
-  /// Holds about 80 bytes per triangle, and 90 while it sorts. Throws OverMemory and Cancelled;
-  /// `memory` and `progress` may be null.
-  WindingTree(PageVector<QuantizedTriangle> triangles, MemoryBudget* memory, Progress* progress);
+  /// Holds about 80 bytes per triangle, and 90 while it sorts. Throws OverMemory and Cancelled.
+  WindingTree(PageVector<QuantizedTriangle> triangles, Work work);
 
   /// Returns the sum of the solid angles of all triangles, seen from `point` in units of 1/256
   /// voxel, over 4 pi. The error is at most `tolerance` times 1 and the part of the sphere around

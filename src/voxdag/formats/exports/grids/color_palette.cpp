@@ -64,8 +64,7 @@ class SummedCells {
     for (int x = 1; x <= kSide; ++x)
       for (int y = 1; y <= kSide; ++y)
         for (int z = 1; z <= kSide; ++z) {
-          const Cell& cell =
-              cells[static_cast<std::size_t>(((x - 1) * kSide + y - 1) * kSide + z - 1)];
+          const Cell& cell = cells[((x - 1) * kSide + y - 1) * kSide + z - 1];
           Moments& sum = at(x, y, z);
           sum = {cell.count, cell.x, cell.y, cell.z, cell.squares};
           sum.add(at(x - 1, y, z), 1).add(at(x, y - 1, z), 1).add(at(x, y, z - 1), 1);
@@ -90,12 +89,8 @@ class SummedCells {
 
  private:
   static constexpr int kStep = kSide + 1;
-  const Moments& at(int x, int y, int z) const {
-    return sums_[static_cast<std::size_t>((x * kStep + y) * kStep + z)];
-  }
-  Moments& at(int x, int y, int z) {
-    return sums_[static_cast<std::size_t>((x * kStep + y) * kStep + z)];
-  }
+  const Moments& at(int x, int y, int z) const { return sums_[(x * kStep + y) * kStep + z]; }
+  Moments& at(int x, int y, int z) { return sums_[(x * kStep + y) * kStep + z]; }
   std::vector<Moments> sums_;
 };
 
@@ -176,7 +171,7 @@ ColorPalette ColorCounter::palette() const {
     for (int x = box.lo[0]; x < box.hi[0]; ++x)
       for (int y = box.lo[1]; y < box.hi[1]; ++y)
         for (int z = box.lo[2]; z < box.hi[2]; ++z)
-          palette.cells_[static_cast<std::size_t>((x * kSide + y) * kSide + z)] = index;
+          palette.cells_[(x * kSide + y) * kSide + z] = index;
   }
   return palette;
 }

@@ -142,8 +142,7 @@ void export_schem(const std::filesystem::path& path, const VoxelSet& voxels, con
                    done += static_cast<std::uint64_t>(end - begin);
                    for (std::int32_t i = begin; i < end; ++i) {
                      const Vec3i voxel{window.lo.x + i, y, window.lo.z + at};
-                     row[static_cast<std::size_t>(i)] =
-                         has_colors ? block_of(look.read(voxel, voxels.levels()).color) : '\1';
+                     row[i] = has_colors ? block_of(look.read(voxel, voxels.levels()).color) : '\1';
                    }
                  });
                  file.write(row);

@@ -103,8 +103,7 @@ void export_slices(const std::filesystem::path& folder, int axis, const VoxelSet
       output.path() / "placement.json", grid, window,
       {has_colors ? "RGBA, opaque where the voxel is set" : "1 where the voxel is set",
        has_colors ? "RGBA of 8 bits" : "1 bit",
-       {names[static_cast<std::size_t>(axis)], names[static_cast<std::size_t>(axes.row)],
-        names[static_cast<std::size_t>(axes.column)]}});
+       {names[axis], names[axes.row], names[axes.column]}});
   output.take_name();
 }
 

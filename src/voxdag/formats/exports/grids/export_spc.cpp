@@ -20,8 +20,7 @@ constexpr std::array<std::uint8_t, 256> kTurnedMasks = [] {
   std::array<std::uint8_t, 256> masks{};
   for (int mask = 0; mask < 256; ++mask)
     for (int child = 0; child < 8; ++child)
-      if ((mask >> child & 1) != 0)
-        masks[static_cast<std::size_t>(mask)] |= static_cast<std::uint8_t>(1 << turned(child));
+      if ((mask >> child & 1) != 0) masks[mask] |= static_cast<std::uint8_t>(1 << turned(child));
   return masks;
 }();
 

@@ -88,7 +88,7 @@ void VoxWriter::write_scene() {
   for (std::int32_t i = 0; i < count; ++i) put(group, 2 * i + 2);
   write_chunk("nGRP", group);
   for (std::int32_t i = 0; i < count; ++i) {
-    const auto& [position, size] = instances_[static_cast<std::size_t>(i)];
+    const auto& [position, size] = instances_[i];
     std::string translation;  // of the middle voxel of the model
     for (int axis = 0; axis < 3; ++axis) {
       if (axis > 0) translation += ' ';

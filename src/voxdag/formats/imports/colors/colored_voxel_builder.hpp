@@ -4,6 +4,7 @@
 
 #include "voxdag/algebra/voxels/sorted_records.hpp"
 #include "voxdag/builders/attributes/build_attributes.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/formats/imports/voxel_source.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
@@ -25,9 +26,9 @@ struct ColoredCode {
 class ColoredVoxelBuilder {
  public:
   /// A grid of 2^levels voxels a side. Holds up to `most_colors` in memory, 16 bytes each; files
-  /// lie in `folder`. `memory` and `progress` may be null. Throws OverMemory.
+  /// lie in `folder`. Throws OverMemory.
   ColoredVoxelBuilder(int levels, std::size_t most_colors, const std::filesystem::path& folder,
-                      MemoryBudget* memory, Progress* progress, ColorRule rule = ColorRule::kMean);
+                      Work work, ColorRule rule = ColorRule::kMean);
 
   /// Adds a colour of a voxel. Throws Error if it lies outside of the grid, or if a file cannot be
   /// written; OverMemory and Cancelled.

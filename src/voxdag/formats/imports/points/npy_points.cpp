@@ -1,5 +1,3 @@
-#include "voxdag/formats/imports/points/npy_points.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -10,8 +8,10 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/printable.hpp"
+#include "voxdag/file/npy.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/imports/volumes/npy_type.hpp"
 
 namespace voxdag {

@@ -1,5 +1,3 @@
-#include "voxdag/formats/imports/points/pcd_points.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +9,7 @@
 #include "voxdag/formats/imports/points/load_value.hpp"
 #include "voxdag/formats/imports/points/lzf_stream.hpp"
 #include "voxdag/formats/imports/points/pcd_header.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
 
 namespace voxdag {
@@ -67,7 +66,7 @@ class PcdPoints : public VoxelSource {
     for (const char* const axis : {"x", "y", "z"}) {
       const int found = header_.find(axis);
       if (found < 0) throw fail_in_header("has no field '" + std::string(axis) + "'");
-      used_.push_back(header_.fields[static_cast<std::size_t>(found)]);
+      used_.push_back(header_.fields[found]);
       if (used_.back().count != 1)
         throw fail_in_header("field '" + std::string(axis) + "' has " +
                              std::to_string(used_.back().count) + " values instead of one");
@@ -75,7 +74,7 @@ class PcdPoints : public VoxelSource {
     for (const char* const name : {"rgb", "rgba"}) {
       const int found = header_.find(name);
       if (found < 0 || used_.size() > 3) continue;
-      const PcdField& field = header_.fields[static_cast<std::size_t>(found)];
+      const PcdField& field = header_.fields[found];
       if (field.count == 1 && field.size == 4) used_.push_back(field);
     }
     if (header_.data == PcdData::kCompressed && header_.points > 0) find_compressed();

@@ -1,12 +1,10 @@
-#include "voxdag/formats/imports/points/ply_points.hpp"
-
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string>
 
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/readers/ply/ply_color.hpp"
 #include "voxdag/formats/readers/ply/ply_header.hpp"
 #include "voxdag/formats/readers/ply/ply_layout.hpp"
@@ -61,9 +59,7 @@ class PlyPoints : public VoxelSource {
   }
 
  private:
-  const PlyElement& vertex() const {
-    return header_.elements[static_cast<std::size_t>(header_.vertex)];
-  }
+  const PlyElement& vertex() const { return header_.elements[header_.vertex]; }
 
   /// Returns the grid of voxdag's own exports: its comments name it.
   std::optional<Grid> grid_of_comments() const {
@@ -131,8 +127,7 @@ class PlyPoints : public VoxelSource {
 
   template <class Use>
   void visit_binary(const Use& use) const {
-    const bool swap =
-        (header_.format == PlyFormat::kBigEndian) != (std::endian::native == std::endian::big);
+    const bool swap = header_.swaps_bytes();
     const char* p = source_.bytes.data() + header_.body;
     const char* const end = source_.bytes.data() + source_.bytes.size();
     PassedPages pages(file_, p);
@@ -187,7 +182,7 @@ class PlyPoints : public VoxelSource {
   }
 
   Values parse_vertex(std::string_view row) const {
-    CancelPoll poll(nullptr);
+    CancelPoll poll({});
     Values values{};
     for (std::size_t p = 0; p < vertex().properties.size(); ++p)
       take_ply_property(row, vertex().properties[p], poll, [&](std::string_view token) {

@@ -1,5 +1,3 @@
-#include "voxdag/formats/imports/points/xyz_points.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -13,6 +11,7 @@
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
 
 namespace voxdag {

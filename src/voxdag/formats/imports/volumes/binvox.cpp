@@ -1,5 +1,3 @@
-#include "voxdag/formats/imports/volumes/binvox.hpp"
-
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/volumes/volume_sources.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {

@@ -1,15 +1,96 @@
 #include "voxdag/formats/imports/volumes/dense_source.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/formats/imports/volumes/gzip_stream.hpp"
-#include "voxdag/formats/imports/volumes/text_values.hpp"
+#include "voxdag/formats/imports/volumes/value_type.hpp"
 
 namespace voxdag {
 namespace {
+
+/// Reads numbers from a byte of a file to its end. All functions throw Error with the byte.
+class TextValues {
+ public:
+  /// The text must outlive this.
+  TextValues(std::filesystem::path path, std::string_view text, std::uint64_t begin)
+      : path_(std::move(path)), text_(text), at_(begin) {}
+
+  /// Fills the span with numbers of a type, in the byte order of the machine. They are decimal and
+  /// stand between white space or commas.
+  void fill_decimal(ValueType type, std::span<std::byte> bytes);
+  /// Fills the span with bytes of two hexadecimal digits each.
+  void fill_hex(std::span<std::byte> bytes);
+  /// Throws if there is more than white space.
+  void expect_end();
+
+ private:
+  void skip_spaces();
+  [[noreturn]] void fail(const std::string& reason) const;
+
+  std::filesystem::path path_;
+  std::string_view text_;
+  std::uint64_t at_;
+};
+
+bool separates(char c) { return c == ' ' || c == ',' || (c >= '\t' && c <= '\r'); }
+
+void TextValues::fill_decimal(ValueType type, std::span<std::byte> bytes) {
+  with_type(type, [&]<class T>(T zero) {
+    // No format has texts of these.
+    if constexpr (std::is_same_v<T, Half>)
+      fail("has a type that is not written as text");
+    else
+      for (std::size_t i = 0; i < bytes.size(); i += sizeof zero) {
+        skip_spaces();
+        if (at_ < text_.size() && text_[at_] == '+') ++at_;
+        const char* const begin = text_.data() + at_;
+        const char* const end = text_.data() + text_.size();
+        auto value = zero;
+        const auto [next, error] = std::from_chars(begin, end, value);
+        if (begin == end) fail("truncated: the volume has more values than the file");
+        if (error != std::errc() || (next != end && !separates(*next)))
+          fail("is not a number of the volume's type");
+        at_ += static_cast<std::uint64_t>(next - begin);
+        std::memcpy(bytes.data() + i, &value, sizeof value);
+      }
+  });
+}
+
+void TextValues::fill_hex(std::span<std::byte> bytes) {
+  for (std::byte& byte : bytes) {
+    skip_spaces();
+    std::uint8_t value = 0;
+    const std::string_view digits = text_.substr(at_, 2);
+    const char* const end = digits.data() + digits.size();
+    if (digits.size() < 2) fail("truncated: the volume has more values than the file");
+    const auto [next, error] = std::from_chars(digits.data(), end, value, 16);
+    if (error != std::errc() || next != end) fail("is not a byte of two hexadecimal digits");
+    at_ += 2;
+    byte = static_cast<std::byte>(value);
+  }
+}
+
+void TextValues::expect_end() {
+  skip_spaces();
+  if (at_ < text_.size()) fail("has more values than the volume");
+}
+
+void TextValues::skip_spaces() {
+  while (at_ < text_.size() && separates(text_[at_])) ++at_;
+}
+
+void TextValues::fail(const std::string& reason) const {
+  throw Error(path_.string(), ErrorPlace::byte(at_), reason);
+}
 
 class DenseSource : public VoxelSource {
  public:

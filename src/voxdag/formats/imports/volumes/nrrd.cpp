@@ -1,9 +1,8 @@
-#include "voxdag/formats/imports/volumes/nrrd.hpp"
-
 #include <string>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/formats/imports/volumes/nrrd_header.hpp"
+#include "voxdag/formats/imports/volumes/volume_sources.hpp"
 
 namespace voxdag {
 namespace {

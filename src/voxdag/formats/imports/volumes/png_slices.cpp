@@ -1,5 +1,3 @@
-#include "voxdag/formats/imports/volumes/png_slices.hpp"
-
 #include <algorithm>
 #include <charconv>
 #include <limits>
@@ -12,6 +10,7 @@
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/volumes/dense_volume.hpp"
 #include "voxdag/formats/imports/volumes/value_test.hpp"
+#include "voxdag/formats/imports/volumes/volume_sources.hpp"
 #include "voxdag/image/image_limits.hpp"
 #include "voxdag/image/png.hpp"
 

@@ -1,10 +1,9 @@
-#include "voxdag/formats/imports/volumes/vdb.hpp"
-
 #include <string>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/load_module.hpp"
 #include "voxdag/formats/imports/volumes/vdb_module.hpp"
+#include "voxdag/formats/imports/volumes/volume_sources.hpp"
 
 namespace voxdag {
 std::unique_ptr<VoxelSource> open_vdb(const std::filesystem::path& path,

@@ -112,7 +112,7 @@ class Vdb : public VoxelSource {
     lo_ = lo;
     VolumeSize size;
     for (int axis = 0; axis < 3; ++axis)
-      size[static_cast<std::size_t>(axis)] = static_cast<std::uint64_t>(hi[axis] - lo[axis] + 1);
+      size[axis] = static_cast<std::uint64_t>(hi[axis] - lo[axis] + 1);
     check_volume_size(path_, size);
     map_ = VolumeMap(path_, size, placement(), warnings_);
   }

@@ -8,7 +8,7 @@ namespace voxdag {
 /// Reads the triangles of the scene, node transforms applied; triangulates polygons, leaves out
 /// points and lines. `extension` (".dxf") chooses the importer; without one the content does.
 ///
-/// Unless options.any_assimp_importer is set, only the importers of importer_choice.hpp are used.
+/// Unless options.any_assimp_importer is set, only the importers that survived fuzzing are used.
 /// Assimp may open only files inside the mesh's folder, or any file if options.allow_outside is
 /// set. Memory: reserves 64 bytes per byte of the file, because assimp's own memory cannot be
 /// counted, and the mesh. Cannot be cancelled while assimp works.

@@ -85,7 +85,7 @@ std::uint32_t gltf_count(const GltfValue& accessor) {
 }
 
 GltfAccessor::GltfAccessor(const GltfFile& file, const GltfValue& value)
-    : components_(component_count(value)), changes_(file.source().options.memory) {
+    : components_(component_count(value)), changes_(file.source().work().memory) {
   type_ = value["componentType"].whole();
   component_bytes_ = voxdag::component_bytes(type_, value);
   if (components_ == 0) throw value.error("the elements must be scalars or vectors");
@@ -120,7 +120,7 @@ void GltfAccessor::read_sparse(const GltfFile& file, const GltfValue& sparse) {
       find_elements(file, sparse["values"], count,
                     static_cast<std::size_t>(components_) * component_bytes_, false);
   changes_.reserve(count);
-  CancelPoll poll(file.source().options.progress);
+  CancelPoll poll(file.source().work());
   for (std::size_t i = 0; i < count; ++i) {
     poll.step();
     const std::uint32_t target = load_index(type, indices.first + i * indices.stride);

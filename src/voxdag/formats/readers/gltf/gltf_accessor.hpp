@@ -55,7 +55,7 @@ class GltfAccessor {
 class GltfAccessors {
  public:
   explicit GltfAccessors(const GltfFile& file)
-      : file_(file), accessors_(file.source().options.memory) {}
+      : file_(file), accessors_(file.source().work().memory) {}
 
   /// The functions below return the accessor that `user` refers to, for one purpose. The references
   /// stay valid. They throw Error and OverMemory.

@@ -30,7 +30,7 @@ bool is_harmless_extension(std::string_view name) {
 }  // namespace
 
 GltfFile::GltfFile(const MeshSource& source)
-    : source_(source), named_files_(source), buffers_(source.options.memory) {
+    : source_(source), named_files_(source), buffers_(source.work().memory) {
   const std::string_view bytes = source.bytes;
   if (!bytes.starts_with("glTF")) {
     parse(bytes);
@@ -87,7 +87,7 @@ void GltfFile::check_version() const {
 }
 
 void GltfFile::open_buffers(std::optional<std::string_view> binary_chunk) {
-  CancelPoll poll(source_.options.progress);
+  CancelPoll poll(source_.work());
   for (const GltfValue value : array(GltfArray::kBuffers)) {
     poll.step();
     Buffer& buffer = buffers_.emplace_back();
@@ -114,7 +114,7 @@ void GltfFile::open_buffers(std::optional<std::string_view> binary_chunk) {
 
 void GltfFile::open_uri(const GltfValue& value, std::string_view uri, Buffer& buffer) const {
   if (uri.starts_with("data:")) {
-    buffer.decoded = decode_data_uri(uri, source_.options.memory, source_.options.progress);
+    buffer.decoded = decode_data_uri(uri, source_.work());
     if (!buffer.decoded)
       throw value.error(uri.find(',') == uri.npos ? "malformed data URI"
                                                   : "data URI is not base64");

@@ -66,8 +66,8 @@ class MaterialReader {
       : file_(file),
         appearance_(appearance),
         warnings_(warnings),
-        memory_(file.source().options.memory, 0),
-        poll_(file.source().options.progress) {}
+        memory_(file.source().work().memory, 0),
+        poll_(file.source().work()) {}
 
   void read(const Mesh& mesh) {
     const GltfItems& materials = file_.array(GltfArray::kMaterials);
@@ -125,8 +125,7 @@ class MaterialReader {
     std::string unescaped;
     const std::string_view uri = image["uri"].text_view(unescaped);
     if (uri.starts_with("data:")) {
-      const auto decoded =
-          decode_data_uri(uri, file_.source().options.memory, file_.source().options.progress);
+      const auto decoded = decode_data_uri(uri, file_.source().work());
       if (!decoded) throw image.error("malformed data URI");
       set_bytes(decoded->bytes, out);
     } else if (uri.empty()) {
@@ -153,8 +152,7 @@ class MaterialReader {
     const GltfValue pbr = value["pbrMetallicRoughness"];
     const std::vector<double> factor = pbr["baseColorFactor"].numbers(4);
     for (int c = 0; c < 3 && !factor.empty(); ++c)
-      material.base_color[c] =
-          static_cast<float>(std::clamp(factor[static_cast<std::size_t>(c)], 0.0, 1.0));
+      material.base_color[c] = static_cast<float>(std::clamp(factor[c], 0.0, 1.0));
     if (!factor.empty()) material.alpha = static_cast<float>(std::clamp(factor[3], 0.0, 1.0));
     material.texture_tint = material.base_color;
     const std::string mode = value["alphaMode"].text("OPAQUE");

@@ -68,11 +68,11 @@ const GltfAccessor& find_positions(const GltfFile& file, const GltfValue& primit
 GltfMesh compile_gltf_mesh(const GltfFile& file, const GltfValue& mesh, GltfAccessors& accessors,
                            Warnings* warnings) {
   using Start = std::pair<const std::uint64_t, std::uint32_t>;
-  MemoryBudget* const memory = file.source().options.memory;
+  MemoryBudget* const memory = file.source().work().memory;
   std::map<std::uint64_t, std::uint32_t, std::less<>, CountedAllocator<Start>> starts(
       (CountedAllocator<Start>(memory)));
   GltfMesh result(memory);
-  CancelPoll poll(file.source().options.progress);
+  CancelPoll poll(file.source().work());
   for (const GltfValue value : mesh["primitives"].items()) {
     poll.step();
     GltfPrimitive primitive{.value = value};

@@ -26,8 +26,8 @@ class GltfReader {
         has_appearance_(parts == ReadParts::kMeshAndAppearance),
         file_(source),
         accessors_(file_),
-        meshes_(source.options.memory),
-        memory_(source.options.memory, 0),
+        meshes_(source.work().memory),
+        memory_(source.work().memory, 0),
         mesh_(empty_mesh(source.options.arrays)) {}
 
   MeshWithAppearance read() {
@@ -53,9 +53,9 @@ class GltfReader {
   void compile(const CountedVector<GltfInstance>& instances) {
     const GltfItems& meshes = file_.array(GltfArray::kMeshes);
     meshes_.reserve(meshes.size());
-    for (std::size_t i = 0; i < meshes.size(); ++i) meshes_.emplace_back(source_.options.memory);
+    for (std::size_t i = 0; i < meshes.size(); ++i) meshes_.emplace_back(source_.work().memory);
     CountedVector<char> is_compiled(meshes.size(), 0,
-                                    CountedAllocator<char>(source_.options.memory));
+                                    CountedAllocator<char>(source_.work().memory));
     for (const GltfInstance& instance : instances) {
       if (is_compiled[instance.mesh]) continue;
       is_compiled[instance.mesh] = 1;
@@ -172,12 +172,10 @@ class GltfReader {
     if ((++steps_ & 0xFFFF) != 0) return;
     file_.release_pages();
     source_.count_work(0x10000 * sizeof(Triangle));
-    Progress* const progress = source_.options.progress;
-    if (progress == nullptr) return;
-    progress->throw_if_cancelled();
+    source_.work().poll();
     const std::size_t items = mesh_.vertices.size() + mesh_.triangles.size();
     const std::size_t all = mesh_.vertices.capacity() + mesh_.triangles.capacity();
-    progress->report("read", static_cast<double>(items) / static_cast<double>(all), items);
+    source_.work().report_done("read", items, all);
   }
 
   const MeshSource& source_;

@@ -25,13 +25,13 @@ int base64_digit(char c) {
 }
 
 /// Returns nothing if the text is not base64.
-std::optional<std::string> decode_base64(std::string_view text, const Progress* progress) {
+std::optional<std::string> decode_base64(std::string_view text, Work work) {
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
   std::string out;
   out.reserve(text.size() / 4 * 3 + 3);
   std::uint32_t bits = 0;
   int count = 0;
-  CancelPoll poll(progress);
+  CancelPoll poll(work);
   for (const char c : text) {
     poll.step();
     const int digit = base64_digit(c);
@@ -48,10 +48,10 @@ std::optional<std::string> decode_base64(std::string_view text, const Progress* 
 
 }  // namespace
 
-std::string decode_percent(std::string_view uri, const Progress* progress) {
+std::string decode_percent(std::string_view uri, Work work) {
   std::string out;
   out.reserve(uri.size());
-  CancelPoll poll(progress);
+  CancelPoll poll(work);
   for (std::size_t i = 0; i < uri.size(); ++i) {
     poll.step();
     const bool is_escaped = uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 &&
@@ -66,18 +66,17 @@ std::string decode_percent(std::string_view uri, const Progress* progress) {
   return out;
 }
 
-std::optional<DecodedUri> decode_data_uri(std::string_view uri, MemoryBudget* memory,
-                                          const Progress* progress) {
+std::optional<DecodedUri> decode_data_uri(std::string_view uri, Work work) {
   const std::size_t comma = uri.find(',');
   if (!uri.starts_with("data:") || comma == uri.npos) return std::nullopt;
   const std::string_view data = uri.substr(comma + 1);
   const bool is_base64 = uri.substr(0, comma).ends_with(";base64");
-  DecodedUri decoded{{memory, is_base64 ? data.size() / 4 * 3 + 3 : data.size()}, {}};
+  DecodedUri decoded{{work.memory, is_base64 ? data.size() / 4 * 3 + 3 : data.size()}, {}};
   if (!is_base64) {
-    decoded.bytes = decode_percent(data, progress);
+    decoded.bytes = decode_percent(data, work);
     return decoded;
   }
-  std::optional<std::string> bytes = decode_base64(data, progress);
+  std::optional<std::string> bytes = decode_base64(data, work);
   if (!bytes) return std::nullopt;
   decoded.bytes = std::move(*bytes);
   return decoded;

@@ -5,13 +5,12 @@
 #include <string_view>
 
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
-/// Returns a relative URI as the path of a file: resolves "%20" and the like. Polls `progress`,
-/// which may be null. Throws Cancelled.
-std::string decode_percent(std::string_view uri, const Progress* progress = nullptr);
+/// Returns a relative URI as the path of a file: resolves "%20" and the like. Throws Cancelled.
+std::string decode_percent(std::string_view uri, Work work = {});
 
 /// The bytes of a `data:` URI.
 struct DecodedUri {
@@ -19,9 +18,7 @@ struct DecodedUri {
   std::string bytes;
 };
 
-/// Decodes a `data:` URI. Returns nothing if it is malformed. Polls `progress`,
-/// which may be null. Throws OverMemory and Cancelled.
-std::optional<DecodedUri> decode_data_uri(std::string_view uri, MemoryBudget* memory,
-                                          const Progress* progress);
+/// Decodes a `data:` URI. Returns nothing if it is malformed. Throws OverMemory and Cancelled.
+std::optional<DecodedUri> decode_data_uri(std::string_view uri, Work work);
 
 }  // namespace voxdag

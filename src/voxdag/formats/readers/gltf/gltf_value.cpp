@@ -69,7 +69,7 @@ std::string_view GltfValue::text_view(std::string& unescaped) const {
   if (json().kind != JsonKind::kString) throw error("is not a string");
   const std::string_view text = document_->text(json());
   if (text.find('\\') == text.npos) return text;
-  const MemoryReservation memory(source_->options.memory, text.size());
+  const MemoryReservation memory(source_->work().memory, text.size());
   unescaped = unescape_json(text);
   return unescaped;
 }

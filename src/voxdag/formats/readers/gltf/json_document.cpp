@@ -97,9 +97,9 @@ class JsonDocument::Parser {
       : source_(source),
         document_(document),
         text_(document.text_),
-        poll_(source.options.progress),
-        pending_(source.options.memory),
-        open_(source.options.memory) {
+        poll_(source.work()),
+        pending_(source.work().memory),
+        open_(source.work().memory) {
     if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
   }
 
@@ -295,7 +295,7 @@ class JsonDocument::Parser {
   void sort_members(CountedVector<JsonNode>::iterator first) {
     const auto key = [&](const JsonNode& node) { return document_.key(node); };
     const auto members = static_cast<std::uint64_t>(pending_.end() - first);
-    const MemoryReservation scratch(source_.options.memory, members * sizeof(JsonNode));
+    const MemoryReservation scratch(source_.work().memory, members * sizeof(JsonNode));
     std::stable_sort(first, pending_.end(),
                      [&](const JsonNode& a, const JsonNode& b) { return key(a) < key(b); });
     auto out = first;
@@ -317,7 +317,7 @@ class JsonDocument::Parser {
 };
 
 JsonDocument::JsonDocument(const MeshSource& source, std::string_view text)
-    : text_(text), nodes_(source.options.memory), unescaped_keys_(source.options.memory) {
+    : text_(text), nodes_(source.work().memory), unescaped_keys_(source.work().memory) {
   if (text.size() >= kAbsent) throw source.error("the JSON must be smaller than 4 GiB");
   Parser(source, *this).parse();
 }

@@ -21,9 +21,9 @@ class MtlReader::Impl {
         files_(files),
         appearance_(appearance),
         warnings_(warnings),
-        names_(source.options.memory),
-        images_(source.options.memory),
-        image_memory_(source.options.memory, 0),
+        names_(source.work().memory),
+        images_(source.work().memory),
+        image_memory_(source.work().memory, 0),
         is_described_(appearance.materials.size(), false) {
     for (const Material& material : appearance.materials) names_.find_or_add(material.name);
   }
@@ -36,9 +36,9 @@ class MtlReader::Impl {
     const char line_end = line_end_of(text);
     line_number_ = 1;
     const char* counted = text.data();
-    CancelPoll poll(source_.options.progress);
+    CancelPoll poll(source_.work());
     for_each_line(
-        text, line_end, source_.options.memory, [&](std::string_view line, const char* position) {
+        text, line_end, source_.work().memory, [&](std::string_view line, const char* position) {
           poll.step();
           line_number_ += static_cast<std::size_t>(std::count(counted, position, line_end));
           counted = position;

@@ -34,12 +34,12 @@ std::uint32_t resolve(std::string_view reference, std::size_t seen, std::size_t 
 ObjAttributes::ObjAttributes(const MeshSource& source, const ObjCounts& totals, bool has_colors)
     : source_(source),
       totals_(totals),
-      uvs_(source.options.memory),
-      normals_(source.options.memory),
-      colors_(source.options.memory),
-      uv_references_(source.options.memory),
-      normal_references_(source.options.memory),
-      results_(source.options.memory, 0) {
+      uvs_(source.work().memory),
+      normals_(source.work().memory),
+      colors_(source.work().memory),
+      uv_references_(source.work().memory),
+      normal_references_(source.work().memory),
+      results_(source.work().memory, 0) {
   if (std::max(totals.uvs, totals.normals) >= ObjReferences::kNone)
     throw source.error("the mesh has more than 4,294,967,294 texture coordinates or normals");
   uvs_.resize(totals.uvs);
@@ -69,11 +69,15 @@ void ObjAttributes::set_color(std::size_t vertex, std::string_view numbers) {
         to_rgba16({srgb_to_linear(rgb[0]), srgb_to_linear(rgb[1]), srgb_to_linear(rgb[2])}, 1);
 }
 
-ObjReferences ObjAttributes::parse_references(std::string_view text, const ObjCounts& seen) {
-  const std::size_t slash = text.find('/');
-  const std::string_view uv = text.substr(0, slash);
-  const std::string_view rest = slash == text.npos ? std::string_view() : text.substr(slash + 1);
-  const std::string_view normal = rest.substr(0, rest.find('/'));
+ObjReferences ObjAttributes::parse_references(std::string_view corner, const ObjCounts& seen) {
+  const auto take_part = [&corner] {
+    const std::size_t size = corner.find('/');
+    const std::string_view part = corner.substr(0, size);
+    corner.remove_prefix(size == corner.npos ? corner.size() : size + 1);
+    return part;
+  };
+  take_part();  // the vertex
+  const std::string_view uv = take_part(), normal = take_part();
   const ObjReferences references{resolve(uv, seen.uvs, totals_.uvs),
                                  resolve(normal, seen.normals, totals_.normals)};
   if ((references.uv == ObjReferences::kNone && !uv.empty()) ||
@@ -91,13 +95,6 @@ void ObjAttributes::set_references(std::size_t triangle, const ObjReferences& a,
   }
 }
 
-void ObjAttributes::move_references(const FaceCutter& cutter, std::size_t first,
-                                    std::size_t triangles) {
-  for (auto* references : {&uv_references_, &normal_references_})
-    if (!references->empty())
-      cutter.move_attributes(std::span(*references).subspan(3 * first, 3 * triangles));
-}
-
 template <class T>
 void ObjAttributes::look_up(CountedVector<std::uint32_t>& references, CountedVector<T>& values,
                             std::vector<T>& result) {
@@ -107,8 +104,8 @@ void ObjAttributes::look_up(CountedVector<std::uint32_t>& references, CountedVec
   parallel_for(references.size(), 65536, [&](std::size_t i) {
     if (references[i] != ObjReferences::kNone) result[i] = values[references[i]];
   });
-  references = CountedVector<std::uint32_t>(source_.options.memory);
-  values = CountedVector<T>(source_.options.memory);
+  references = CountedVector<std::uint32_t>(source_.work().memory);
+  values = CountedVector<T>(source_.work().memory);
 }
 
 void ObjAttributes::finish(const Mesh& mesh, Appearance& appearance) {

@@ -5,9 +5,8 @@
 #include <limits>
 #include <string_view>
 
-#include "voxdag/formats/readers/face_cutter.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
-#include "voxdag/formats/readers/obj/obj_chunk.hpp"
+#include "voxdag/formats/readers/obj/obj_passes.hpp"
 #include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
@@ -30,14 +29,12 @@ class ObjAttributes {
   /// Sets the colour of a vertex from the numbers that follow its coordinates, if there are three.
   void set_color(std::size_t vertex, std::string_view numbers);
 
-  /// Parses a corner "v/vt/vn" from "vt" on. `seen` counts the values that precede the face in the
-  /// file. A reference to a value that does not exist counts as bad.
-  ObjReferences parse_references(std::string_view text, const ObjCounts& seen);
+  /// Parses "vt" and "vn" of a corner "v/vt/vn". `seen` counts the values that precede the face in
+  /// the file. A reference to a value that does not exist counts as bad.
+  ObjReferences parse_references(std::string_view corner, const ObjCounts& seen);
   /// Sets the references of the three corners of a triangle.
   void set_references(std::size_t triangle, const ObjReferences& a, const ObjReferences& b,
                       const ObjReferences& c);
-  /// Moves the references of a face that `cutter` has cut, whose fan starts at triangle `first`.
-  void move_references(const FaceCutter& cutter, std::size_t first, std::size_t triangles);
 
   /// Replaces the references by their values. Call it once, at the end. Throws OverMemory.
   void finish(const Mesh& mesh, Appearance& appearance);

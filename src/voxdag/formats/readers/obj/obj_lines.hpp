@@ -16,7 +16,7 @@ inline std::string_view next_corner(std::string_view& line) {
 
 /// Calls body(text, position) for every line of a chunk, with leading blanks removed and continued
 /// lines joined. `position` points to the line's start in the file. Counts joined lines against
-/// `memory`, which may be null.
+/// `memory`.
 template <class Line>
 void for_each_line(std::string_view chunk, char line_end, MemoryBudget* memory, const Line& body) {
   std::basic_string<char, std::char_traits<char>, CountedAllocator<char>> joined(memory);

@@ -62,7 +62,7 @@ std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh
   // Counts the material and its name, here and in the MTL reader's table.
   std::uint64_t bytes = count * sizeof(Material);
   for (const std::string& name : mesh.materials) bytes += name.size() + 1;
-  const MemoryReservation memory(source.options.memory, bytes);
+  const MemoryReservation memory(source.work().memory, bytes);
   materials.resize(count);
   for (std::size_t i = 0; i < mesh.materials.size(); ++i) materials[i].name = mesh.materials[i];
   for (Material& material : materials)
@@ -70,7 +70,7 @@ std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh
 
   const NamedFiles files(source);
   MtlReader reader(source, files, appearance, warnings);
-  NameTable seen(source.options.memory);
+  NameTable seen(source.work().memory);
   for_each_library(source, libraries, [&](std::string_view name) {
     const std::filesystem::path path = files.find(source.folder, name, {source.name, "mtllib"});
     const std::string key = path.lexically_normal().string();

@@ -1,65 +1,47 @@
-/// Makes two parallel passes over chunks of whole lines. The first counts the contents of each
-/// chunk, so that the second can parse into arrays of their final size. When all vertices are
-/// known, faces are cut.
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 
 #include <limits>
 #include <optional>
 
-#include "voxdag/formats/readers/bad_vertex.hpp"
-#include "voxdag/formats/readers/chunks.hpp"
+#include "voxdag/formats/readers/face_writer.hpp"
 #include "voxdag/formats/readers/obj/obj_attributes.hpp"
 #include "voxdag/formats/readers/obj/obj_materials.hpp"
-#include "voxdag/formats/readers/obj/obj_values.hpp"
+#include "voxdag/formats/readers/obj/obj_passes.hpp"
 
 namespace voxdag {
 namespace {
 
 constexpr std::uint32_t kNoMaterial = std::numeric_limits<std::uint32_t>::max();
 
-/// The start of a chunk in the mesh, and the data that the second pass leaves for the cut.
+/// A chunk's place in the mesh.
 struct PlacedChunk {
-  explicit PlacedChunk(MemoryBudget* memory) : is_same_face(memory) {}
-
-  ObjCounts first;                       ///< Counts of everything before the chunk.
-  std::size_t triangles = 0;             ///< Number of triangles in the chunk.
+  std::string_view text;
+  ObjCounts counts, first;               ///< Its contents; the contents of all chunks before.
   std::uint32_t material = kNoMaterial;  ///< The material at the start of the chunk.
-  bool has_bad_vertex = false;           ///< A vertex of the chunk is NaN or infinite.
-  /// For each triangle of the chunk: whether it belongs to the face of the previous triangle. Empty
-  /// if no triangle does.
-  CountedVector<bool> is_same_face;
+  bool has_faces = false;
+  bool has_bad_vertex = false;  ///< A vertex of the chunk is NaN or infinite.
 };
 
-/// A parsed corner of a face.
-struct Corner {
-  std::uint32_t vertex = 0;
-  ObjReferences references;
-};
-
+/// Reads all chunks into arrays that have their final size from the start.
 class ObjReader {
  public:
   ObjReader(const MeshSource& source, ReadParts parts)
       : source_(source),
-        has_appearance_(parts == ReadParts::kMeshAndAppearance),
-        line_end_(line_end_of(source.bytes)),
-        texts_(split_lines(without_byte_order_mark(source.bytes), line_end_)),
-        memory_(source.options.memory, 0),
-        material_ids_(source.options.memory),
-        libraries_(source.options.memory),
+        parts_(parts),
+        file_(source, kChunkBytes),
+        texts_(file_.chunks().all()),
+        memory_(source.work().memory, 0),
+        material_ids_(source.work().memory),
+        libraries_(source.work().memory),
         mesh_(empty_mesh(source.options.arrays)) {}
 
   MeshWithAppearance read() {
     count_chunks();
     report_obj_libraries(source_, libraries_);
-    for_each_chunk(source_, texts_, line_end_, "read", [this](std::size_t i) { parse(i); });
+    read_chunks();
     check_finite();
-    source_.end_pass();
-    parallel_for(chunks_.size(), [this](std::size_t i) {
-      cut_faces(chunks_[i]);
-      source_.count_work(texts_[i].size());
-    });
     MeshWithAppearance result;
-    if (has_appearance_) {
+    if (attributes_) {
       attributes_->finish(mesh_, result.appearance);
       result.warnings = read_obj_materials(source_, mesh_, libraries_, attributes_->has_colors(),
                                            attributes_->bad_references(), result.appearance);
@@ -73,26 +55,24 @@ class ObjReader {
   /// for them.
   void count_chunks() {
     std::vector<std::optional<ObjChunk>> counted(texts_.size());
-    for_each_chunk(source_, texts_, line_end_, "scan",
-                   [&](std::size_t i) { counted[i].emplace(source_, texts_[i], line_end_); });
+    for_each_chunk(source_, texts_, file_.line_end(), "scan",
+                   [&](std::size_t i) { counted[i].emplace(file_.count(texts_[i], parts_)); });
     std::uint32_t material = kNoMaterial;
     bool has_colors = false;
-    for (std::optional<ObjChunk>& chunk : counted) {
-      PlacedChunk& placed = chunks_.emplace_back(source_.options.memory);
-      placed.first = totals_;
-      placed.triangles = chunk->counts.triangles;
-      totals_ += chunk->counts;
-      has_colors = has_colors || chunk->has_colors;
-      if (material == kNoMaterial && chunk->faces_before_material)
+    for (std::size_t c = 0; c < counted.size(); ++c) {
+      const ObjChunk& chunk = *counted[c];
+      has_colors = has_colors || chunk.has_colors;
+      if (material == kNoMaterial && chunk.has_faces_before_material)
         material = material_ids_.find_or_add("");  // The material of faces before any usemtl.
-      placed.material = material;
-      for (std::size_t i = 0; i < chunk->materials.size(); ++i)
-        material_ids_.find_or_add(chunk->materials[i]);
-      if (!chunk->materials.empty())
-        material = *material_ids_.find(chunk->materials[chunk->last_material]);
-      for (std::size_t i = 0; i < chunk->libraries.size(); ++i)
-        libraries_.find_or_add(chunk->libraries[i]);
-      chunk.reset();
+      chunks_.push_back({texts_[c], chunk.counts, totals_, material, chunk.has_faces});
+      totals_ += chunk.counts;
+      for (std::size_t i = 0; i < chunk.materials.size(); ++i)
+        material_ids_.find_or_add(chunk.materials[i]);
+      if (!chunk.materials.empty())
+        material = *material_ids_.find(chunk.materials[chunk.last_material]);
+      for (std::size_t i = 0; i < chunk.libraries.size(); ++i)
+        libraries_.find_or_add(chunk.libraries[i]);
+      counted[c].reset();
     }
     if (totals_.triangles == 0)
       throw source_.error("OBJ without faces: there is no surface to read");
@@ -119,102 +99,49 @@ class ObjReader {
       for (std::size_t i = 0; i < material_ids_.size(); ++i)
         mesh_.materials.push_back(material_ids_[i]);
     }
-    if (has_appearance_) attributes_.emplace(source_, totals_, has_colors);
+    if (parts_ == ReadParts::kMeshAndAppearance) attributes_.emplace(source_, totals_, has_colors);
   }
 
-  void parse(std::size_t i) {
-    PlacedChunk& chunk = chunks_[i];
-    ObjCounts seen = chunk.first;  // Counts of everything before the line.
+  /// Reads the vertices, then the faces. A face can precede its vertices, and cutting it needs them
+  /// all. If a vertex is at fault, a face before it can be too: the first fault in the file counts.
+  void read_chunks() {
+    std::optional<Fault> fault =
+        find_fault(source_, texts_, "read", [this](std::size_t i) { read_vertices(chunks_[i]); });
+    source_.end_pass();
+    const AllVertices vertices{0, totals_.vertices,
+                               [this](std::uint32_t vertex) { return mesh_.vertices[vertex]; }};
+    const std::optional<Fault> in_faces = find_fault(
+        source_, texts_, "read", [&](std::size_t i) { read_faces(chunks_[i], vertices); });
+    if (!fault || (in_faces && in_faces->position < fault->position)) fault = in_faces;
+    if (fault) throw_fault(source_, *fault, file_.line_end());
+  }
+
+  void read_vertices(PlacedChunk& chunk) {
+    const ObjCounts& counts = chunk.counts;
+    const std::size_t attribute_values = attributes_ ? counts.uvs + counts.normals : 0;
+    if (counts.vertices + attribute_values == 0) return;
+    const auto vertices = std::span(mesh_.vertices).subspan(chunk.first.vertices, counts.vertices);
+    chunk.has_bad_vertex = !file_.read_vertices(chunk.text, vertices, chunk.first, attributes());
+  }
+
+  void read_faces(const PlacedChunk& chunk, const AllVertices& vertices) {
+    if (!chunk.has_faces) return;
+    const auto triangles =
+        std::span(mesh_.triangles).subspan(chunk.first.triangles, chunk.counts.triangles);
+    ObjFaces faces(source_, vertices, triangles, attributes());
+    ObjCounts seen = chunk.first;
     std::uint32_t material = chunk.material;
-    CancelPoll poll(source_.options.progress);
-    for_each_line(texts_[i], line_end_, source_.options.memory,
-                  [&](std::string_view line, const char* position) {
-                    switch (take_keyword(line)) {
-                      case ObjStatement::kVertex: {
-                        const Vec3f p = take_vertex(line, position);
-                        chunk.has_bad_vertex |= !is_finite(p);
-                        mesh_.vertices[seen.vertices] = p;
-                        if (has_appearance_ && attributes_->has_colors() && is_finite(p))
-                          attributes_->set_color(seen.vertices, line);
-                        ++seen.vertices;
-                        break;
-                      }
-                      case ObjStatement::kUv:
-                        if (has_appearance_) attributes_->set_uv(seen.uvs, line);
-                        ++seen.uvs;
-                        break;
-                      case ObjStatement::kNormal:
-                        if (has_appearance_) attributes_->set_normal(seen.normals, line);
-                        ++seen.normals;
-                        break;
-                      case ObjStatement::kFace: {
-                        const std::size_t first = seen.triangles;
-                        parse_face(line, position, seen, poll);
-                        if (!mesh_.triangle_materials.empty())
-                          for (std::size_t t = first; t < seen.triangles; ++t)
-                            mesh_.triangle_materials[t] = material;
-                        if (seen.triangles > first + 1) mark_face(chunk, first, seen.triangles);
-                        break;
-                      }
-                      case ObjStatement::kMaterial:
-                        material = *material_ids_.find(trim(line));
-                        break;
-                      default:
-                        break;
-                    }
-                  });
-  }
-
-  /// Writes the fan of one face from seen.triangles on, and adds the fan's size to seen.triangles.
-  void parse_face(std::string_view corners, const char* position, ObjCounts& seen,
-                  CancelPoll& poll) {
-    Corner first, previous;
-    for (std::size_t n = 0;; ++n) {
-      poll.step();
-      const std::string_view text = next_corner(corners);
-      if (text.empty()) return;
-      Corner corner{parse_vertex_index(text, seen.vertices, mesh_.vertices.size(), position), {}};
-      if (has_appearance_) {
-        const std::size_t slash = text.find('/');
-        if (slash != text.npos)
-          corner.references = attributes_->parse_references(text.substr(slash + 1), seen);
-      }
-      if (n == 0) first = corner;
-      if (n >= 2) {
-        mesh_.triangles[seen.triangles] = {first.vertex, previous.vertex, corner.vertex};
-        if (has_appearance_)
-          attributes_->set_references(seen.triangles, first.references, previous.references,
-                                      corner.references);
-        ++seen.triangles;
-      }
-      previous = corner;
-    }
-  }
-
-  /// Records that the triangles [first, end) are the fan of one face.
-  static void mark_face(PlacedChunk& chunk, std::size_t first, std::size_t end) {
-    if (chunk.is_same_face.empty()) chunk.is_same_face.resize(chunk.triangles, false);
-    for (std::size_t t = first + 1; t < end; ++t)
-      chunk.is_same_face[t - chunk.first.triangles] = true;
-  }
-
-  void cut_faces(const PlacedChunk& chunk) {
-    if (source_.options.progress != nullptr) source_.options.progress->throw_if_cancelled();
-    FaceCutter cutter(source_);
-    const auto& is_same_face = chunk.is_same_face;
-    const auto triangles = std::span(mesh_.triangles).subspan(chunk.first.triangles);
-    for (std::size_t first = 0; first < is_same_face.size();) {
-      std::size_t end = first + 1;
-      while (end < is_same_face.size() && is_same_face[end]) ++end;
-      const auto fan = triangles.subspan(first, end - first);
-      if (has_appearance_) {
-        cutter.cut_and_match(fan, mesh_.vertices);
-        attributes_->move_references(cutter, chunk.first.triangles + first, fan.size());
-      } else {
-        cutter.cut(fan, mesh_.vertices);
-      }
-      first = end;
-    }
+    file_.for_each_statement(
+        chunk.text, [&](ObjStatement statement, std::string_view line, const char* position) {
+          seen.add_value(statement);
+          if (statement == ObjStatement::kMaterial) material = *material_ids_.find(trim(line));
+          if (statement != ObjStatement::kFace) return;
+          const std::size_t count = faces.read(line, position, seen);
+          if (!mesh_.triangle_materials.empty())
+            std::fill_n(mesh_.triangle_materials.data() + seen.triangles, count, material);
+          seen.triangles += count;
+        });
+    faces.check_full();
   }
 
   /// Refuses triangles with a vertex that is not finite. Such a vertex may stay if unused.
@@ -222,27 +149,19 @@ class ObjReader {
     if (std::none_of(chunks_.begin(), chunks_.end(),
                      [](const PlacedChunk& chunk) { return chunk.has_bad_vertex; }))
       return;
-    if (const auto bad = find_bad_vertex(source_, mesh_))
-      throw_fault(source_, {vertex_line(*bad), kBadVertex}, line_end_);
+    const auto bad = find_bad_vertex(source_, mesh_);
+    if (!bad) return;
+    std::size_t i = chunks_.size() - 1;
+    while (chunks_[i].first.vertices > *bad) --i;
+    const char* const line = file_.find_vertex(chunks_[i].text, *bad - chunks_[i].first.vertices);
+    throw_fault(source_, {line, kBadVertex}, file_.line_end());
   }
 
-  /// Returns the start of the line that defines a vertex.
-  const char* vertex_line(std::size_t index) const {
-    std::size_t i = chunks_.size() - 1;
-    while (chunks_[i].first.vertices > index) --i;
-    const char* found = nullptr;
-    std::size_t vertex = chunks_[i].first.vertices;
-    for_each_line(texts_[i], line_end_, source_.options.memory,
-                  [&](std::string_view line, const char* position) {
-                    if (take_keyword(line) == ObjStatement::kVertex && vertex++ == index)
-                      found = position;
-                  });
-    return found;
-  }
+  ObjAttributes* attributes() { return attributes_ ? &*attributes_ : nullptr; }
 
   const MeshSource& source_;
-  const bool has_appearance_;
-  const char line_end_;
+  const ReadParts parts_;
+  const ObjFile file_;
   const std::vector<std::string_view> texts_;
   std::vector<PlacedChunk> chunks_;
   ObjCounts totals_;
@@ -252,6 +171,57 @@ class ObjReader {
   Mesh mesh_;
 };
 
+/// Reads chunks on demand.
+class ObjMeshChunks final : public MeshChunks {
+ public:
+  ObjMeshChunks(MappedFile file, const std::filesystem::path& path, const ReadOptions& options,
+                std::size_t chunk_bytes)
+      : MeshChunks(std::move(file), path, options), file_(source(), chunk_bytes) {}
+
+  std::uint64_t count() const override { return file_.chunks().count(); }
+
+  std::optional<ChunkCounts> counts(std::uint64_t chunk) const override {
+    ChunkCounts counts;
+    read(chunk, [&](std::string_view text) {
+      const ObjCounts counted = file_.count(text, ReadParts::kMesh).counts;
+      counts = {counted.vertices, counted.triangles};
+    });
+    return counts;
+  }
+
+  void read_vertices(std::uint64_t chunk, std::span<Vec3f> vertices) const override {
+    read(chunk, [&](std::string_view text) { file_.read_vertices(text, vertices, {}, nullptr); });
+  }
+
+  void read_triangles(std::uint64_t chunk, const AllVertices& vertices,
+                      std::span<Triangle> triangles) const override {
+    read(chunk, [&](std::string_view text) {
+      ObjFaces faces(source(), vertices, triangles, nullptr);
+      ObjCounts seen{.vertices = vertices.before};
+      file_.for_each_statement(
+          text, [&](ObjStatement statement, std::string_view line, const char* position) {
+            seen.add_value(statement);
+            if (statement == ObjStatement::kFace) faces.read(line, position, seen);
+          });
+      faces.check_full();
+    });
+  }
+
+  [[noreturn]] void throw_bad_vertex(std::uint64_t chunk, std::uint64_t index) const override {
+    const char* const line = file_.find_vertex(file_.chunks()[chunk], index);
+    throw_fault(source(), {line, kBadVertex}, file_.line_end());
+  }
+
+ private:
+  template <class Work>
+  void read(std::uint64_t chunk, const Work& work) const {
+    const std::string_view text = file_.chunks()[chunk];
+    MeshChunks::read(text, file_.line_end(), [&] { work(text); });
+  }
+
+  ObjFile file_;
+};
+
 }  // namespace
 
 MeshWithAppearance read_obj(const MeshSource& source, ReadParts parts) {
@@ -259,6 +229,11 @@ MeshWithAppearance read_obj(const MeshSource& source, ReadParts parts) {
   if (source.bytes.starts_with("\xFF\xFE") || source.bytes.starts_with("\xFE\xFF"))
     throw source.error("OBJ in UTF-16: save it as ASCII or UTF-8");
   return ObjReader(source, parts).read();
+}
+
+std::unique_ptr<MeshChunks> open_obj_chunks(MappedFile file, const std::filesystem::path& path,
+                                            const ReadOptions& options, std::size_t chunk_bytes) {
+  return std::make_unique<ObjMeshChunks>(std::move(file), path, options, chunk_bytes);
 }
 
 }  // namespace voxdag

@@ -1,6 +1,6 @@
 #pragma once
 /// Wavefront OBJ.
-#include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/formats/readers/mesh_chunks.hpp"
 #include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
@@ -17,5 +17,9 @@ namespace voxdag {
 /// Throws Error with the line: malformed vertices or faces, references out of range, triangles with
 /// a vertex that is not finite. Throws Error if there are no triangles.
 MeshWithAppearance read_obj(const MeshSource& source, ReadParts parts);
+
+/// Opens an OBJ file in chunks. Throws as open_mesh_chunks() does.
+std::unique_ptr<MeshChunks> open_obj_chunks(MappedFile file, const std::filesystem::path& path,
+                                            const ReadOptions& options, std::size_t chunk_bytes);
 
 }  // namespace voxdag

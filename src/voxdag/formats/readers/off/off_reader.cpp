@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "voxdag/formats/readers/chunks.hpp"
-#include "voxdag/formats/readers/face_cutter.hpp"
+#include "voxdag/formats/readers/face_writer.hpp"
 
 namespace voxdag {
 namespace {
@@ -13,9 +13,7 @@ class OffReader {
   explicit OffReader(const MeshSource& source)
       : source_(source),
         line_end_(line_end_of(source.bytes)),
-        poll_(source.options.progress),
-        memory_(source.options.memory, 0),
-        cutter_(source),
+        memory_(source.work().memory, 0),
         rest_(without_byte_order_mark(source.bytes)),
         mesh_(empty_mesh(source.options.arrays)) {}
 
@@ -113,21 +111,14 @@ class OffReader {
   }
 
   void read_faces(std::size_t faces) {
-    std::size_t triangle = 0;
+    const AllVertices vertices{0, mesh_.vertices.size(),
+                               [this](std::uint32_t vertex) { return mesh_.vertices[vertex]; }};
+    FaceWriter writer(source_, vertices, mesh_.triangles);
     for (std::size_t face = 0; face < faces; ++face) {
       std::string_view row = next_row();
       const std::size_t corners = corner_count(row);
-      const std::size_t first_triangle = triangle;
-      std::uint32_t first = 0, previous = 0;
-      for (std::size_t corner = 0; corner < corners; ++corner) {
-        poll_.step();
-        const std::uint32_t index = vertex_index(row);
-        if (corner == 0) first = index;
-        if (corner >= 2) mesh_.triangles[triangle++] = {first, previous, index};
-        previous = index;
-      }
-      cutter_.cut(std::span(mesh_.triangles).subspan(first_triangle, triangle - first_triangle),
-                  mesh_.vertices);
+      for (std::size_t corner = 0; corner < corners; ++corner) writer.add_corner(vertex_index(row));
+      writer.finish_face(row.data());
       release();
     }
   }
@@ -140,7 +131,7 @@ class OffReader {
     if (index < 0 || static_cast<std::uint64_t>(index) >= mesh_.vertices.size())
       throw Fault{row.data(), "vertex index " + std::to_string(index) + " is out of range: " +
                                   std::to_string(mesh_.vertices.size()) + " vertices"};
-    if (!is_finite(mesh_.vertices[static_cast<std::size_t>(index)]))
+    if (!is_finite(mesh_.vertices[index]))
       throw Fault{row.data(),
                   "vertex " + std::to_string(index) + " is not finite and this face uses it"};
     return static_cast<std::uint32_t>(index);
@@ -157,9 +148,7 @@ class OffReader {
 
   const MeshSource& source_;
   const char line_end_;
-  CancelPoll poll_;
   MemoryReservation memory_;
-  FaceCutter cutter_;
   std::string_view rest_;
   std::size_t released_ = 0;
   Mesh mesh_;

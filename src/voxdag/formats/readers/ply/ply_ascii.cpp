@@ -1,7 +1,6 @@
 /// Reads the body of an ascii PLY file, which has one row per line. One pass over chunks of lines
 /// counts the rows, a second pass counts the triangles. Then all values are parsed into arrays of
 /// their final size.
-#include "voxdag/formats/readers/ply/ply_attributes.hpp"
 #include "voxdag/formats/readers/ply/ply_rows.hpp"
 #include "voxdag/formats/readers/ply/ply_text_row.hpp"
 
@@ -23,11 +22,13 @@ class AsciiReader {
         header_(body.header),
         fields_(body.fields),
         memory_(memory),
-        texts_(split_lines(source_.bytes.substr(header_.body), header_.line_end)),
+        texts_(LineChunks{source_.bytes.substr(header_.body), header_.line_end}.all()),
         first_rows_(texts_.size() + 1),
         first_triangles_(texts_.size() + 1),
         has_bad_vertex_(texts_.size(), 0),
-        mesh_(empty_mesh(source_.options.arrays)) {}
+        mesh_(empty_mesh(source_.options.arrays)),
+        vertices_{0, fields_.vertex.count,
+                  [this](std::uint32_t vertex) { return mesh_.vertices[vertex]; }} {}
 
   Mesh read() {
     count_rows();
@@ -45,7 +46,7 @@ class AsciiReader {
     });
     source_.end_pass();
     for_each_row("read", face_rows_, [this](Chunk& chunk, std::size_t, std::string_view row) {
-      parse_face(chunk, row);
+      parse_face(chunk.faces, chunk.poll, row);
     });
     check_finite();
     return std::move(mesh_);
@@ -59,18 +60,10 @@ class AsciiReader {
 
   /// The state of a thread that parses a chunk.
   struct Chunk {
-    Chunk(const MeshSource& source, std::size_t i, std::size_t first_triangle)
-        : index(i),
-          triangle(first_triangle),
-          poll(source.options.progress),
-          values(source.options.memory),
-          cutter(source) {}
-
     std::size_t index;
-    std::size_t triangle;  ///< The next triangle to write.
     CancelPoll poll;
     PlyRowValues values;
-    FaceCutter cutter;
+    PlyFaces faces;
   };
 
   void count_rows() {
@@ -103,7 +96,9 @@ class AsciiReader {
     for_each_chunk(source_, texts_, header_.line_end, stage, [&](std::size_t i) {
       if (first_rows_[i + 1] <= rows.first || first_rows_[i] >= rows.last) return;
       std::string_view text = texts_[i];
-      Chunk chunk(source_, i, first_triangles_[i]);
+      Chunk chunk{i, CancelPoll(source_.work()), PlyRowValues(source_.work().memory),
+                  PlyFaces(body_, vertices_,
+                           ply_triangles(mesh_, first_triangles_[i], first_triangles_[i + 1]))};
       for (std::size_t row = first_rows_[i]; row < rows.last && !text.empty();) {
         const std::string_view line = next_line(text, header_.line_end);
         if (trim(line).empty()) continue;
@@ -115,8 +110,7 @@ class AsciiReader {
 
   std::size_t count_corners(std::string_view row, CancelPoll& poll) const {
     for (int p = 0; p < fields_.indices; ++p)
-      take_ply_property(row, fields_.face.properties[static_cast<std::size_t>(p)], poll,
-                        [](std::string_view) {});
+      take_ply_property(row, fields_.face.properties[p], poll, [](std::string_view) {});
     const char* const start = row.data();
     std::int64_t corners = 0;
     // A corner needs at least two characters, so a count that is too large for the line is refused
@@ -137,7 +131,7 @@ class AsciiReader {
       values.texcoord.push_back(value);
     } else if (columns.slots[property] >= 0) {
       parse_float(token, value);
-      values.scalars[static_cast<std::size_t>(columns.slots[property])] = value;
+      values.scalars[columns.slots[property]] = value;
     }
   }
 
@@ -148,8 +142,7 @@ class AsciiReader {
     for (std::size_t p = 0; p < properties.size(); ++p)
       take_ply_property(row, properties[p], chunk.poll, [&](std::string_view token) {
         for (int axis = 0; axis < 3; ++axis)
-          if (fields_.axes[static_cast<std::size_t>(axis)] == static_cast<int>(p) &&
-              !parse_float(token, vertex[axis]))
+          if (fields_.axes[axis] == static_cast<int>(p) && !parse_float(token, vertex[axis]))
             throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
         if (has_values) take_value(body_.attributes->vertex_columns(), p, token, chunk.values);
       });
@@ -159,42 +152,20 @@ class AsciiReader {
     if (has_values) body_.attributes->take_vertex(index, chunk.values);
   }
 
-  /// Writes the triangles of one face from chunk.triangle on, and adds their number to
-  /// chunk.triangle.
-  void parse_face(Chunk& chunk, std::string_view row) {
+  void parse_face(PlyFaces& faces, CancelPoll& poll, std::string_view row) {
     const auto& properties = fields_.face.properties;
-    const bool has_values = body_.attributes != nullptr;
-    const std::size_t first_triangle = chunk.triangle;
-    std::uint32_t material = 0;
-    chunk.values.texcoord.clear();
+    const char* const start = row.data();
     for (std::size_t p = 0; p < properties.size(); ++p) {
       const int property = static_cast<int>(p);
-      std::uint32_t first = 0, previous = 0;
-      std::size_t corner = 0;
-      take_ply_property(row, properties[p], chunk.poll, [&](std::string_view token) {
-        if (property == fields_.material)
-          material = checked_material(to_int(token), mesh_.materials.size(), token.data());
-        if (has_values) take_value(body_.attributes->face_columns(), p, token, chunk.values);
-        if (property != fields_.indices) return;
-        const std::uint32_t index =
-            checked_index(to_int(token), mesh_.vertices.size(), token.data());
-        if (corner == 0) first = index;
-        if (corner >= 2) mesh_.triangles[chunk.triangle++] = {first, previous, index};
-        previous = index;
-        ++corner;
+      take_ply_property(row, properties[p], poll, [&](std::string_view token) {
+        if (property == fields_.material) faces.set_material(to_int(token), token.data());
+        if (body_.attributes != nullptr)
+          take_value(body_.attributes->face_columns(), p, token, faces.values);
+        if (property == fields_.indices) faces.add_corner(to_int(token), token.data());
       });
     }
     check_ply_row_end(row);
-    const std::size_t count = chunk.triangle - first_triangle;
-    const auto fan = std::span(mesh_.triangles).subspan(first_triangle, count);
-    if (has_values) {
-      chunk.cutter.cut_and_match(fan, mesh_.vertices);
-      body_.attributes->take_face(first_triangle, count, chunk.values, chunk.cutter);
-    } else {
-      chunk.cutter.cut(fan, mesh_.vertices);
-    }
-    for (std::size_t t = first_triangle; t < chunk.triangle && fields_.material >= 0; ++t)
-      mesh_.triangle_materials[t] = material;
+    faces.finish_row(start);
   }
 
   void check_finite() {
@@ -217,6 +188,7 @@ class AsciiReader {
   std::vector<char> has_bad_vertex_;                       ///< Per chunk.
   Rows vertex_rows_, face_rows_;
   Mesh mesh_;
+  const AllVertices vertices_;
 };
 
 }  // namespace

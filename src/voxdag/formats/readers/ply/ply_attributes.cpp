@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/core/printable.hpp"
 #include "voxdag/formats/readers/named_files.hpp"
 #include "voxdag/formats/readers/ply/ply_color.hpp"
 #include "voxdag/image/color.hpp"
@@ -16,7 +17,7 @@ using Slot = PlyRowValues::Slot;
 
 void set_slots(PlyColumns& columns, const std::vector<int>& properties, Slot first) {
   for (std::size_t i = 0; i < properties.size(); ++i)
-    columns.slots[static_cast<std::size_t>(properties[i])] = first + static_cast<int>(i);
+    columns.slots[properties[i]] = first + static_cast<int>(i);
 }
 
 void find_color(const PlyElement& element, PlyColumns& columns) {
@@ -54,10 +55,10 @@ PlyAttributes::PlyAttributes(const MeshSource& source, const PlyHeader& header,
                              const PlyFields& fields)
     : source_(source),
       header_(header),
-      vertex_colors_(source.options.memory),
-      vertex_normals_(source.options.memory),
-      vertex_uvs_(source.options.memory),
-      memory_(source.options.memory, 0) {
+      vertex_colors_(source.work().memory),
+      vertex_normals_(source.work().memory),
+      vertex_uvs_(source.work().memory),
+      memory_(source.work().memory, 0) {
   vertex_.slots.assign(fields.vertex.properties.size(), -1);
   face_.slots.assign(fields.face.properties.size(), -1);
   find_color(fields.vertex, vertex_);
@@ -65,15 +66,13 @@ PlyAttributes::PlyAttributes(const MeshSource& source, const PlyHeader& header,
   find_uv(fields.vertex, vertex_);
   if (vertex_.color_components == 0) find_color(fields.face, face_);
   const int list = fields.face.find({"texcoord"});
-  if (!vertex_.has_uvs && list >= 0 &&
-      fields.face.properties[static_cast<std::size_t>(list)].count_type)
+  if (!vertex_.has_uvs && list >= 0 && fields.face.properties[list].count_type)
     face_.texcoord = list;
   const PlyElement& colored = vertex_.color_components > 0 ? fields.vertex : fields.face;
   const PlyColumns& columns = vertex_.color_components > 0 ? vertex_ : face_;
   for (std::size_t p = 0; p < columns.slots.size(); ++p)
     if (columns.slots[p] >= Slot::kRed && columns.slots[p] <= Slot::kAlpha)
-      color_scales_[static_cast<std::size_t>(columns.slots[p])] =
-          ply_color_scale(colored.properties[p].type);
+      color_scales_[columns.slots[p]] = ply_color_scale(colored.properties[p].type);
 }
 
 void PlyAttributes::resize_vertices(std::size_t count) {
@@ -111,20 +110,18 @@ void PlyAttributes::take_vertex(std::size_t index, const PlyRowValues& row) {
   if (vertex_.has_uvs) vertex_uvs_[index] = to_uv(row.scalars[Slot::kU], row.scalars[Slot::kV]);
 }
 
-void PlyAttributes::take_face(std::size_t first, std::size_t count, const PlyRowValues& row,
-                              const FaceCutter& cutter) {
-  if (face_.color_components > 0) {
-    const Rgba16 color = color_of(face_, row);
-    for (std::size_t i = 3 * first; i < 3 * (first + count); ++i) appearance_.colors[i] = color;
+Rgba16 PlyAttributes::face_color(const PlyRowValues& row) const {
+  return face_.color_components > 0 ? color_of(face_, row) : Rgba16{};
+}
+
+void PlyAttributes::take_triangle(std::size_t index, const Triangle& corners, Rgba16 face_color,
+                                  std::span<const float> texcoord) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (face_.color_components > 0) appearance_.colors[3 * index + c] = face_color;
+    if (!texcoord.empty())
+      appearance_.uvs[3 * index + c] =
+          to_uv(texcoord[2 * corners[c]], texcoord[2 * corners[c] + 1]);
   }
-  if (face_.texcoord < 0 || row.texcoord.size() != 2 * (count + 2)) return;
-  const auto uvs = std::span(appearance_.uvs).subspan(3 * first, 3 * count);
-  for (std::size_t t = 0; t < count; ++t)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::size_t corner = c == 0 ? 0 : t + c;
-      uvs[3 * t + c] = to_uv(row.texcoord[2 * corner], row.texcoord[2 * corner + 1]);
-    }
-  cutter.move_attributes(uvs);
 }
 
 Appearance PlyAttributes::finish(const Mesh& mesh, std::vector<std::string>& warnings) {

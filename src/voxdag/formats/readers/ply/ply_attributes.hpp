@@ -6,10 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "voxdag/formats/readers/face_cutter.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
 #include "voxdag/formats/readers/ply/ply_header.hpp"
-#include "voxdag/formats/readers/ply/ply_rows.hpp"
 #include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
@@ -53,9 +51,12 @@ class PlyAttributes {
   void resize_triangles(std::size_t count);
 
   void take_vertex(std::size_t index, const PlyRowValues& row);
-  /// Stores the values of a face that has become `count` triangles from triangle `first` on.
-  void take_face(std::size_t first, std::size_t count, const PlyRowValues& row,
-                 const FaceCutter& cutter);
+  /// Returns the colour of a face, if faces have colours.
+  Rgba16 face_color(const PlyRowValues& row) const;
+  /// Stores the values of triangle `index`, which joins three corners of a face. `texcoord` has u
+  /// and v of the face's corners, or is empty.
+  void take_triangle(std::size_t index, const Triangle& corners, Rgba16 face_color,
+                     std::span<const float> texcoord);
 
   /// Completes the appearance: corners, materials, the texture. Call it once, at the end. Throws
   /// Error if the texture is outside the file's folder.

@@ -1,32 +1,22 @@
 /// Reads the binary body of a PLY file. Rows with lists differ in size, so a sequential pass finds
-/// the starts of blocks of rows and their numbers of triangles. Then threads read the blocks.
-#include <bit>
-
-#include "voxdag/formats/readers/ply/ply_attributes.hpp"
-#include "voxdag/formats/readers/ply/ply_layout.hpp"
-#include "voxdag/formats/readers/ply/ply_rows.hpp"
+/// the starts of blocks of rows and their numbers of triangles. Then threads read the blocks. If
+/// all faces are triangles, all rows have known places, and PlyMeshChunks needs no such pass.
+#include "voxdag/formats/readers/ply/ply_binary_rows.hpp"
+#include "voxdag/formats/readers/ply/ply_reader.hpp"
 
 namespace voxdag {
 namespace {
 
-/// A run of rows of one element.
+/// A run of rows of one element. Only faces have triangles.
 struct Block {
-  std::string_view bytes;
-  std::size_t first_row = 0, rows = 0;
-  std::size_t first_triangle = 0;
+  PlyRows rows;
+  std::size_t first_triangle = 0, triangles = 0;
 };
 
-/// Parts and blocks of an element's rows.
+/// Blocks of an element's rows, and the bytes of each.
 struct Blocks {
   std::vector<Block> blocks;
-  std::vector<std::string_view> parts;  ///< The bytes of each block.
-};
-
-/// The destination of a property's values.
-struct Column {
-  int slot;  ///< PlyRowValues::Slot; -1: the list `texcoord`.
-  PlyType type;
-  Place place;
+  std::vector<std::string_view> parts;
 };
 
 class BinaryReader {
@@ -37,35 +27,27 @@ class BinaryReader {
         header_(body.header),
         fields_(body.fields),
         memory_(memory),
-        swap_((header_.format == PlyFormat::kBigEndian) !=
-              (std::endian::native == std::endian::big)),
+        rows_(body),
         rest_(source_.bytes.substr(header_.body)),
         mesh_(empty_mesh(source_.options.arrays)) {}
 
   Mesh read() {
-    std::size_t triangles = 0;
     for (const PlyElement& element : header_.elements) {
       Blocks blocks = split(element);
       if (&element == &fields_.vertex) vertices_ = std::move(blocks);
       if (&element == &fields_.face) faces_ = std::move(blocks);
     }
-    for (Block& block : faces_.blocks) {
-      const std::size_t count = block.first_triangle;
-      block.first_triangle = triangles;
-      triangles += count;
-    }
     resize_ply_vertices(body_, memory_, mesh_);
-    read_vertices();
+    const bool all_finite = read_vertices();
     source_.end_pass();
-    resize_ply_triangles(body_, triangles, memory_, mesh_);
+    resize_ply_triangles(body_, place_triangles(), memory_, mesh_);
     read_faces();
-    if (has_bad_vertex_) check_finite();
+    if (!all_finite) check_finite();
     return std::move(mesh_);
   }
 
  private:
-  /// Removes an element's rows from `rest_` and divides them into blocks. In blocks of faces,
-  /// `first_triangle` is the block's number of triangles at this stage.
+  /// Removes an element's rows from `rest_` and divides them into blocks.
   Blocks split(const PlyElement& element) {
     const RowLayout layout(element);
     Blocks blocks;
@@ -75,12 +57,12 @@ class BinaryReader {
     } catch (const Fault& fault) {
       throw_fault(source_, fault, kNoLines);
     }
-    for (const Block& block : blocks.blocks) blocks.parts.push_back(block.bytes);
+    for (const Block& block : blocks.blocks) blocks.parts.push_back(block.rows.bytes);
     return blocks;
   }
 
   void split_fixed(const PlyElement& element, const RowLayout& layout, std::vector<Block>& blocks) {
-    const std::size_t stride = layout.fixed_row_bytes();
+    const std::size_t stride = layout.row_bytes(0);
     if (stride == 0) return;
     if (element.count > rest_.size() / stride)
       throw Fault{rest_.data() + rest_.size(), "the file ends after " +
@@ -90,7 +72,7 @@ class BinaryReader {
     const std::size_t rows_per_block = std::max<std::size_t>(1, kChunkBytes / stride);
     for (std::size_t row = 0; row < element.count; row += rows_per_block) {
       const std::size_t rows = std::min<std::size_t>(rows_per_block, element.count - row);
-      blocks.push_back({rest_.substr(0, rows * stride), row, rows, 0});
+      blocks.push_back({{rest_.substr(0, rows * stride), row, rows}});
       rest_.remove_prefix(rows * stride);
     }
   }
@@ -98,151 +80,55 @@ class BinaryReader {
   void split_lists(const PlyElement& element, const RowLayout& layout, std::vector<Block>& blocks) {
     const char* const end = rest_.data() + rest_.size();
     const bool is_face = &element == &fields_.face;
-    const std::size_t list_run =
-        is_face ? layout.places[static_cast<std::size_t>(fields_.indices)].run : layout.runs.size();
+    const std::size_t corner_run =
+        is_face ? layout.places[fields_.indices].run : layout.runs.size();
     const char* p = rest_.data();
     for (std::size_t row = 0; row < element.count;) {
-      Block block{{}, row, 0, 0};
+      Block block{{{}, row, 0}};
       const char* const start = p;
       for (; row < element.count && static_cast<std::size_t>(p - start) < kChunkBytes; ++row)
-        p = layout.walk(p, end, swap_, [&](std::size_t run, const char*, std::size_t items) {
-          if (run == list_run && items > 2) block.first_triangle += items - 2;
-        });
-      block.rows = row - block.first_row;
-      block.bytes = {start, static_cast<std::size_t>(p - start)};
+        p = layout.walk(p, end, header_.swaps_bytes(),
+                        [&](std::size_t run, const char*, std::size_t items) {
+                          if (run == corner_run && items > 2) block.triangles += items - 2;
+                        });
+      block.rows.count = row - block.rows.first;
+      block.rows.bytes = {start, static_cast<std::size_t>(p - start)};
       blocks.push_back(block);
-      source_.done_with(block.bytes, "scan");
+      source_.done_with(block.rows.bytes, "scan");
     }
     rest_ = {p, static_cast<std::size_t>(end - p)};
   }
 
-  /// Returns the properties of an element that belong to the appearance; none if the appearance is
-  /// not read.
-  std::vector<Column> used_columns(const PlyElement& element, const RowLayout& layout,
-                                   const PlyColumns& columns) const {
-    std::vector<Column> used;
-    for (std::size_t p = 0; p < columns.slots.size(); ++p)
-      if (columns.slots[p] >= 0 || static_cast<int>(p) == columns.texcoord)
-        used.push_back({columns.slots[p], element.properties[p].type, layout.places[p]});
-    return used;
+  /// Sets the blocks' first triangles. Returns the number of all triangles.
+  std::size_t place_triangles() {
+    std::size_t triangles = 0;
+    for (Block& block : faces_.blocks) {
+      block.first_triangle = triangles;
+      triangles += block.triangles;
+    }
+    return triangles;
   }
 
-  /// Stores the values of one run of a row.
-  void take_values(const std::vector<Column>& columns, const RowLayout& layout, std::size_t run,
-                   const char* fixed, std::size_t items, PlyRowValues& values) const {
-    for (const Column& column : columns) {
-      if (column.place.run != run) continue;
-      const char* at = fixed + column.place.offset;
-      if (column.slot >= 0) {
-        values.scalars[static_cast<std::size_t>(column.slot)] = load_float(column.type, at, swap_);
-        continue;
-      }
-      at += size_of(layout.runs[run].count_type);
-      values.texcoord.resize(items);
-      for (float& value : values.texcoord) {
-        value = load_float(column.type, at, swap_);
-        at += size_of(column.type);
-      }
-    }
-  }
-
-  void read_vertices() {
-    const RowLayout layout(fields_.vertex);
-    std::array<Place, 3> places;
-    std::array<PlyType, 3> types;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto property = static_cast<std::size_t>(fields_.axes[axis]);
-      places[axis] = layout.places[property];
-      types[axis] = fields_.vertex.properties[property].type;
-    }
-    const bool has_values = body_.attributes != nullptr;
-    std::vector<Column> columns;
-    if (has_values)
-      columns = used_columns(fields_.vertex, layout, body_.attributes->vertex_columns());
-    std::vector<char> bad(vertices_.blocks.size(), 0);
+  /// Returns whether all vertices are finite.
+  bool read_vertices() {
+    std::atomic<bool> all_finite{true};
     for_each_chunk(source_, vertices_.parts, kNoLines, "read", [&](std::size_t i) {
-      const Block& block = vertices_.blocks[i];
-      const char* p = block.bytes.data();
-      const char* const end = p + block.bytes.size();
-      PlyRowValues values(source_.options.memory);
-      for (std::size_t row = 0; row < block.rows; ++row) {
-        Vec3f& vertex = mesh_.vertices[block.first_row + row];
-        p = layout.walk(p, end, swap_, [&](std::size_t run, const char* fixed, std::size_t items) {
-          for (std::size_t axis = 0; axis < 3; ++axis)
-            if (places[axis].run == run)
-              vertex[static_cast<int>(axis)] =
-                  load_float(types[axis], fixed + places[axis].offset, swap_);
-          if (has_values) take_values(columns, layout, run, fixed, items, values);
-        });
-        bad[i] |= !is_finite(vertex);
-        if (has_values) body_.attributes->take_vertex(block.first_row + row, values);
-      }
+      const PlyRows& rows = vertices_.blocks[i].rows;
+      if (!rows_.read_vertices(rows, std::span(mesh_.vertices).subspan(rows.first, rows.count)))
+        all_finite = false;
     });
-    has_bad_vertex_ = std::find(bad.begin(), bad.end(), 1) != bad.end();
+    return all_finite;
   }
 
   void read_faces() {
-    const RowLayout layout(fields_.face);
-    const PlyProperty& list = fields_.face.properties[static_cast<std::size_t>(fields_.indices)];
-    const std::size_t list_run = layout.places[static_cast<std::size_t>(fields_.indices)].run;
-    const std::size_t list_skip = layout.runs[list_run].fixed_bytes + size_of(*list.count_type);
-    const std::size_t item_bytes = size_of(list.type);
-    const std::size_t vertices = mesh_.vertices.size();
-    const bool has_values = body_.attributes != nullptr;
-    std::vector<Column> columns;
-    if (has_values) columns = used_columns(fields_.face, layout, body_.attributes->face_columns());
+    const AllVertices vertices{0, fields_.vertex.count,
+                               [this](std::uint32_t vertex) { return mesh_.vertices[vertex]; }};
     for_each_chunk(source_, faces_.parts, kNoLines, "read", [&](std::size_t i) {
-      const char* p = faces_.parts[i].data();
-      const char* const end = p + faces_.parts[i].size();
-      std::size_t triangle = faces_.blocks[i].first_triangle;
-      PlyRowValues values(source_.options.memory);
-      FaceCutter cutter(source_);
-      CancelPoll poll(source_.options.progress);
-      for (std::size_t row = 0; row < faces_.blocks[i].rows; ++row) {
-        const std::size_t first_triangle = triangle;
-        const char* const row_start = p;
-        p = layout.walk(p, end, swap_, [&](std::size_t run, const char* fixed, std::size_t items) {
-          if (has_values) take_values(columns, layout, run, fixed, items, values);
-          if (run != list_run || items < 3) return;
-          const char* item = fixed + list_skip;
-          const auto next = [&] {
-            poll.step();
-            const std::int64_t index = load_int(list.type, item, swap_);
-            const std::uint32_t checked = checked_index(index, vertices, item);
-            item += item_bytes;
-            return checked;
-          };
-          const std::uint32_t first = next();
-          std::uint32_t previous = next();
-          for (std::size_t n = 2; n < items; ++n) {
-            const std::uint32_t current = next();
-            mesh_.triangles[triangle++] = {first, previous, current};
-            previous = current;
-          }
-        });
-        const std::size_t count = triangle - first_triangle;
-        const auto fan = std::span(mesh_.triangles).subspan(first_triangle, count);
-        if (has_values) {
-          cutter.cut_and_match(fan, mesh_.vertices);
-          body_.attributes->take_face(first_triangle, count, values, cutter);
-        } else {
-          cutter.cut(fan, mesh_.vertices);
-        }
-        if (fields_.material >= 0) read_material(layout, row_start, end, first_triangle, triangle);
-      }
-    });
-  }
-
-  void read_material(const RowLayout& layout, const char* row, const char* end, std::size_t first,
-                     std::size_t last) {
-    const auto property = static_cast<std::size_t>(fields_.material);
-    const Place place = layout.places[property];
-    layout.walk(row, end, swap_, [&](std::size_t run, const char* fixed, std::size_t) {
-      if (run != place.run) return;
-      const char* const at = fixed + place.offset;
-      const std::uint32_t material = checked_material(
-          load_int(fields_.face.properties[property].type, at, swap_), mesh_.materials.size(), at);
-      for (std::size_t t = first; t < last; ++t) mesh_.triangle_materials[t] = material;
+      const Block& block = faces_.blocks[i];
+      PlyFaces faces(
+          body_, vertices,
+          ply_triangles(mesh_, block.first_triangle, block.first_triangle + block.triangles));
+      rows_.read_faces(block.rows, faces);
     });
   }
 
@@ -250,13 +136,8 @@ class BinaryReader {
     const auto bad = find_bad_vertex(source_, mesh_);
     if (!bad) return;
     std::size_t i = vertices_.blocks.size() - 1;
-    while (vertices_.blocks[i].first_row > *bad) --i;
-    const RowLayout layout(fields_.vertex);
-    const char* p = vertices_.parts[i].data();
-    const char* const end = p + vertices_.parts[i].size();
-    for (std::size_t row = vertices_.blocks[i].first_row; row < *bad; ++row)
-      p = layout.walk(p, end, swap_, [](std::size_t, const char*, std::size_t) {});
-    throw_fault(source_, {p, kBadVertex}, kNoLines);
+    while (vertices_.blocks[i].rows.first > *bad) --i;
+    throw_fault(source_, {rows_.find_vertex(vertices_.blocks[i].rows, *bad), kBadVertex}, kNoLines);
   }
 
   const PlyBody& body_;
@@ -264,17 +145,119 @@ class BinaryReader {
   const PlyHeader& header_;
   const PlyFields& fields_;
   MemoryReservation& memory_;
-  const bool swap_;
+  const PlyBinaryRows rows_;
   std::string_view rest_;
   Blocks vertices_, faces_;
-  bool has_bad_vertex_ = false;
   Mesh mesh_;
+};
+
+/// The rows of an element, if all have one size.
+struct FixedRows {
+  std::uint64_t at = 0;  ///< Offset of the first row in the file.
+  std::uint64_t count = 0;
+  std::size_t row_bytes = 0;
+
+  PlyRows rows(std::string_view file, std::uint64_t first, std::uint64_t last) const {
+    return {file.substr(at + first * row_bytes, (last - first) * row_bytes), first, last - first};
+  }
+};
+
+/// Each chunk has its share of the vertices and its share of the faces.
+class PlyMeshChunks final : public MeshChunks {
+ public:
+  PlyMeshChunks(MappedFile file, const std::filesystem::path& path, const ReadOptions& options,
+                std::size_t chunk_bytes)
+      : MeshChunks(std::move(file), path, options),
+        header_(parse_ply_header(source())),
+        fields_(header_),
+        rows_(body_),
+        is_readable_(find_rows()),
+        chunks_((vertices_.count * vertices_.row_bytes + faces_.count * faces_.row_bytes) /
+                    chunk_bytes +
+                1) {}
+
+  /// Returns whether rows have one size, if all faces are triangles.
+  bool is_readable() const { return is_readable_; }
+
+  std::uint64_t count() const override { return chunks_; }
+
+  std::optional<ChunkCounts> counts(std::uint64_t chunk) const override {
+    const PlyRows faces = rows_of(chunk, faces_);
+    const RowLayout layout(fields_.face);
+    bool all_triangles = true;
+    read(faces.bytes, kNoLines, [&] {
+      const char* const first_list = faces.bytes.data() + layout.runs[0].fixed_bytes;
+      for (std::uint64_t i = 0; i < faces.count && all_triangles; ++i)
+        all_triangles = load_int(layout.runs[0].count_type, first_list + i * faces_.row_bytes,
+                                 header_.swaps_bytes()) == 3;
+    });
+    if (!all_triangles) return std::nullopt;
+    return ChunkCounts{rows_of(chunk, vertices_).count, faces.count};
+  }
+
+  void read_vertices(std::uint64_t chunk, std::span<Vec3f> vertices) const override {
+    const PlyRows rows = rows_of(chunk, vertices_);
+    read(rows.bytes, kNoLines, [&] { rows_.read_vertices(rows, vertices); });
+  }
+
+  void read_triangles(std::uint64_t chunk, const AllVertices& vertices,
+                      std::span<Triangle> triangles) const override {
+    const PlyRows rows = rows_of(chunk, faces_);
+    read(rows.bytes, kNoLines, [&] {
+      PlyFaces faces(body_, vertices, {0, triangles, {}});
+      rows_.read_faces(rows, faces);
+      faces.check_full();
+    });
+  }
+
+  [[noreturn]] void throw_bad_vertex(std::uint64_t chunk, std::uint64_t index) const override {
+    const PlyRows rows = rows_of(chunk, vertices_);
+    throw_fault(source(), {rows_.find_vertex(rows, rows.first + index), kBadVertex}, kNoLines);
+  }
+
+ private:
+  /// Finds the rows of vertices and faces. Returns false if rows of an element differ in size.
+  bool find_rows() {
+    if (header_.format == PlyFormat::kAscii) return false;
+    std::uint64_t at = header_.body;
+    for (const PlyElement& element : header_.elements) {
+      const RowLayout layout(element);
+      const bool is_face = &element == &fields_.face;
+      // The only list that may be is that of a face's corners. It has three if counts() is right.
+      if (layout.runs.size() != (is_face ? 2 : 1)) return false;
+      const FixedRows rows{at, element.count, layout.row_bytes(3)};
+      if (is_face) faces_ = rows;
+      if (&element == &fields_.vertex) vertices_ = rows;
+      at += rows.count * rows.row_bytes;
+    }
+    return at <= source().bytes.size();
+  }
+
+  PlyRows rows_of(std::uint64_t chunk, const FixedRows& element) const {
+    return element.rows(source().bytes, first_item(chunk, element.count),
+                        first_item(chunk + 1, element.count));
+  }
+
+  const PlyHeader header_;
+  const PlyFields fields_;
+  const PlyBody body_{source(), header_, fields_, nullptr};
+  const PlyBinaryRows rows_;
+  FixedRows vertices_, faces_;
+  bool is_readable_;
+  std::uint64_t chunks_;
 };
 
 }  // namespace
 
 Mesh read_ply_binary(const PlyBody& body, MemoryReservation& memory) {
   return BinaryReader(body, memory).read();
+}
+
+std::unique_ptr<MeshChunks> open_ply_chunks(MappedFile file, const std::filesystem::path& path,
+                                            const ReadOptions& options, std::size_t chunk_bytes) {
+  auto chunks = std::make_unique<PlyMeshChunks>(std::move(file), path, options, chunk_bytes);
+  if (!chunks->is_readable()) return nullptr;
+  return chunks;
 }
 
 }  // namespace voxdag

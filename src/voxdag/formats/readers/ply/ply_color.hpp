@@ -15,8 +15,7 @@ inline std::vector<int> find_ply_scalars(const PlyElement& element,
   std::vector<int> found;
   for (const std::string_view name : names) {
     const int property = element.find({name});
-    if (property < 0 || element.properties[static_cast<std::size_t>(property)].count_type)
-      return {};
+    if (property < 0 || element.properties[property].count_type) return {};
     found.push_back(property);
   }
   return found;

@@ -29,8 +29,8 @@ std::optional<PlyType> parse_type(std::string_view name) {
 class PlyHeaderParser {
  public:
   explicit PlyHeaderParser(const MeshSource& source) : source_(source), rest_(source.bytes) {
-    header_.materials = CountedVector<std::string_view>(source.options.memory);
-    header_.textures = CountedVector<std::string_view>(source.options.memory);
+    header_.materials = CountedVector<std::string_view>(source.work().memory);
+    header_.textures = CountedVector<std::string_view>(source.work().memory);
   }
 
   PlyHeader parse(PlyUse use) {
@@ -38,26 +38,9 @@ class PlyHeaderParser {
     find_line_end();
     std::string_view magic = line();
     if (next_token(magic) != "ply") fail("not a PLY file: it does not start with 'ply'");
-    bool has_format = false;
-    for (;;) {
-      if (rest_.empty()) fail("the file ends before 'end_header'");
-      std::string_view text = line();
-      const std::string_view keyword = next_token(text);
-      if (keyword == "end_header") break;
-      if (keyword == "comment")
-        parse_comment(text);
-      else if (keyword == "format")
-        has_format = (parse_format(text), true);
-      else if (keyword == "element")
-        parse_element(text);
-      else if (keyword == "property")
-        parse_property(text);
-      else if (keyword != "obj_info" && !keyword.empty() && !header_.elements.empty())
-        // Before the first element an unknown line is harmless: old Blender writes "Created by
-        // ...".
-        fail("unknown PLY header keyword " + in_quotes(keyword));
+    while (parse_line(line_or_fail())) {
     }
-    if (!has_format) fail("PLY header without a 'format' line");
+    if (!has_format_) fail("PLY header without a 'format' line");
     header_.body = source_.bytes.size() - rest_.size();
     check_elements();
     check_vertices();
@@ -83,6 +66,29 @@ class PlyHeaderParser {
     return next_line(rest_, header_.line_end);
   }
 
+  std::string_view line_or_fail() {
+    if (rest_.empty()) fail("the file ends before 'end_header'");
+    return line();
+  }
+
+  /// Returns false for the last line of the header.
+  bool parse_line(std::string_view text) {
+    const std::string_view keyword = next_token(text);
+    if (keyword == "end_header") return false;
+    if (keyword == "comment")
+      parse_comment(text);
+    else if (keyword == "format")
+      parse_format(text);
+    else if (keyword == "element")
+      parse_element(text);
+    else if (keyword == "property")
+      parse_property(text);
+    else if (keyword != "obj_info" && !keyword.empty() && !header_.elements.empty())
+      // Lines before the first element may be anything: old versions of Blender write "Created by".
+      fail("unknown PLY header keyword " + in_quotes(keyword));
+    return true;
+  }
+
   void parse_comment(std::string_view text) {
     std::int64_t number = 0;
     const std::string_view keyword = next_token(text);
@@ -93,6 +99,7 @@ class PlyHeaderParser {
   }
 
   void parse_format(std::string_view text) {
+    has_format_ = true;
     const std::string_view name = next_token(text), version = next_token(text);
     if (name == "ascii")
       header_.format = PlyFormat::kAscii;
@@ -117,7 +124,7 @@ class PlyHeaderParser {
       if (known.name == name) fail("element " + in_quotes(name) + " is declared twice");
     property_names_.clear();
     header_.elements.push_back({name, static_cast<std::uint64_t>(count),
-                                CountedVector<PlyProperty>(source_.options.memory)});
+                                CountedVector<PlyProperty>(source_.work().memory)});
   }
 
   void parse_property(std::string_view text) {
@@ -154,11 +161,11 @@ class PlyHeaderParser {
 
   void check_vertices() {
     if (header_.vertex < 0) fail("PLY without a 'vertex' element");
-    const PlyElement& vertex = header_.elements[static_cast<std::size_t>(header_.vertex)];
+    const PlyElement& vertex = header_.elements[header_.vertex];
     for (const std::string_view axis : {"x", "y", "z"}) {
       const int found = vertex.find({axis});
       if (found < 0) fail("PLY vertices without property " + in_quotes(axis));
-      if (vertex.properties[static_cast<std::size_t>(found)].count_type)
+      if (vertex.properties[found].count_type)
         fail("PLY vertex property " + in_quotes(axis) + " is a list");
     }
   }
@@ -167,15 +174,14 @@ class PlyHeaderParser {
     for (const PlyElement& element : header_.elements)
       if (element.name == "tristrips" && element.count > 0)
         fail("PLY with triangle strips: save it with a 'face' element");
-    if (header_.elements[static_cast<std::size_t>(header_.vertex)].count >=
-        std::numeric_limits<std::uint32_t>::max())
+    if (header_.elements[header_.vertex].count >= std::numeric_limits<std::uint32_t>::max())
       fail("the mesh has more than 4,294,967,294 vertices");
     if (header_.face < 0) fail("PLY without a 'face' element: there is no surface to read");
-    const PlyElement& face = header_.elements[static_cast<std::size_t>(header_.face)];
+    const PlyElement& face = header_.elements[header_.face];
     if (face.count == 0) fail("PLY with 0 faces: there is no surface to read");
     const int indices = face.find({"vertex_indices", "vertex_index"});
     if (indices < 0) fail("PLY faces without property 'vertex_indices'");
-    const PlyProperty& list = face.properties[static_cast<std::size_t>(indices)];
+    const PlyProperty& list = face.properties[indices];
     if (!list.count_type || !is_integer(list.type))
       fail("the vertex indices of PLY faces must be a list of integers");
   }
@@ -194,7 +200,8 @@ class PlyHeaderParser {
   const MeshSource& source_;
   std::string_view rest_;
   std::size_t line_ = 0;
-  CancelPoll poll_{source_.options.progress};
+  bool has_format_ = false;
+  CancelPoll poll_{source_.work()};
   std::set<std::string_view> property_names_;  ///< Names in the last element.
   PlyHeader header_;
 };

@@ -1,5 +1,7 @@
 #pragma once
 /// The header of a PLY file (Greg Turk, The PLY Polygon File Format, 1994).
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -54,6 +56,11 @@ struct PlyHeader {
   CountedVector<std::string_view> textures;   ///< Comments `TextureFile NAME`.
   std::size_t body = 0;                       ///< Offset of the first byte after the header.
 
+  /// Returns whether the bytes of values are in another order than this machine's.
+  bool swaps_bytes() const {
+    return (format == PlyFormat::kBigEndian) != (std::endian::native == std::endian::big);
+  }
+
   int vertex = -1;  ///< Index of element `vertex`; always in range after parse_ply_header().
   int face = -1;    ///< Index of element `face`; always in range if the use is kMesh.
 };
@@ -68,5 +75,27 @@ enum class PlyUse : std::uint8_t {
 /// at least as long as the counts imply. A mesh also needs faces with a list of integer indices and
 /// at most 2^32 - 2 vertices. Throws Error with the line, OverMemory.
 PlyHeader parse_ply_header(const MeshSource& source, PlyUse use = PlyUse::kMesh);
+
+/// The elements and the indices of the properties that belong to the mesh. `header` must outlive
+/// it.
+struct PlyFields {
+  explicit PlyFields(const PlyHeader& header)
+      : vertex(header.elements[header.vertex]),
+        face(header.elements[header.face]),
+        axes{vertex.find({"x"}), vertex.find({"y"}), vertex.find({"z"})},
+        indices(face.find({"vertex_indices", "vertex_index"})),
+        material(header.materials.empty() ? -1 : face.find({"material_index"})) {
+    if (material >= 0) {
+      const PlyProperty& property = face.properties[material];
+      if (property.count_type || !is_integer(property.type)) material = -1;
+    }
+  }
+
+  const PlyElement& vertex;
+  const PlyElement& face;
+  std::array<int, 3> axes;
+  int indices;
+  int material;  ///< -1: the file has no materials.
+};
 
 }  // namespace voxdag

@@ -54,6 +54,9 @@ struct Run {
   std::size_t fixed_bytes = 0;
   PlyType count_type = PlyType::kUint8;
   std::size_t item_bytes = 0;  ///< 0: not a list.
+
+  /// Returns the offset of the first item in the run.
+  std::size_t list_offset() const { return fixed_bytes + size_of(count_type); }
 };
 
 /// The place of a property: its run, and its offset in bytes in the run. A list follows the run's
@@ -80,7 +83,13 @@ struct RowLayout {
     }
   }
   bool has_lists() const { return runs.size() > 1; }
-  std::size_t fixed_row_bytes() const { return runs[0].fixed_bytes; }
+  /// Returns the size of a row whose lists have `items` items each.
+  std::size_t row_bytes(std::size_t items) const {
+    std::size_t bytes = 0;
+    for (const Run& run : runs)
+      bytes += run.item_bytes > 0 ? run.list_offset() + items * run.item_bytes : run.fixed_bytes;
+    return bytes;
+  }
 
   /// Calls on_run(index, start of its fixed bytes, items in its list) for each run of the row at
   /// `p`. Returns the row's end. Throws Fault if the row extends beyond `end`.

@@ -1,7 +1,7 @@
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 
 #include "voxdag/formats/readers/named_files.hpp"
-#include "voxdag/formats/readers/ply/ply_attributes.hpp"
+#include "voxdag/formats/readers/ply/ply_rows.hpp"
 
 namespace voxdag {
 
@@ -14,7 +14,7 @@ MeshWithAppearance read_ply(const MeshSource& source, ReadParts parts) {
   if (parts == ReadParts::kMeshAndAppearance) attributes.emplace(source, header, fields);
   PlyBody body{source, header, fields, attributes ? &*attributes : nullptr};
   MeshWithAppearance result;
-  MemoryReservation memory(source.options.memory, 0);
+  MemoryReservation memory(source.work().memory, 0);
   result.mesh = header.format == PlyFormat::kAscii ? read_ply_ascii(body, memory)
                                                    : read_ply_binary(body, memory);
   if (attributes) result.appearance = attributes->finish(result.mesh, result.warnings);

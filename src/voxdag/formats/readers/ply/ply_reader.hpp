@@ -1,6 +1,6 @@
 #pragma once
 /// PLY, the Polygon File Format.
-#include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/formats/readers/mesh_chunks.hpp"
 #include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
@@ -18,5 +18,10 @@ namespace voxdag {
 /// counts that need a longer file, truncation, references out of range, triangles with a vertex
 /// that is not finite, triangle strips. Throws Error if there are no triangles.
 MeshWithAppearance read_ply(const MeshSource& source, ReadParts parts);
+
+/// Opens a binary PLY file in chunks. Returns null if it is not binary, if faces have other lists
+/// than that of their corners, or if other elements have lists. Throws as open_mesh_chunks() does.
+std::unique_ptr<MeshChunks> open_ply_chunks(MappedFile file, const std::filesystem::path& path,
+                                            const ReadOptions& options, std::size_t chunk_bytes);
 
 }  // namespace voxdag

@@ -1,9 +1,8 @@
 #include "voxdag/formats/readers/ply/ply_rows.hpp"
 
-#include "voxdag/formats/readers/ply/ply_attributes.hpp"
+#include <string>
 
 namespace voxdag {
-
 void resize_ply_vertices(const PlyBody& body, MemoryReservation& memory, Mesh& mesh) {
   memory.resize(body.source.options.counted(body.fields.vertex.count * sizeof(Vec3f)));
   mesh.vertices.resize(body.fields.vertex.count);
@@ -32,18 +31,28 @@ void resize_ply_triangles(const PlyBody& body, std::size_t triangles, MemoryRese
   if (body.attributes != nullptr) body.attributes->resize_triangles(triangles);
 }
 
-std::uint32_t checked_index(std::int64_t index, std::size_t vertices, const char* position) {
-  if (index < 0 || static_cast<std::uint64_t>(index) >= vertices)
-    throw Fault{position, "vertex index " + std::to_string(index) +
-                              " is out of range: " + std::to_string(vertices) + " vertices"};
-  return static_cast<std::uint32_t>(index);
+PlyTriangles ply_triangles(Mesh& mesh, std::size_t first, std::size_t last) {
+  PlyTriangles part{first, std::span(mesh.triangles).subspan(first, last - first), {}};
+  if (!mesh.triangle_materials.empty())
+    part.materials = std::span(mesh.triangle_materials).subspan(first, last - first);
+  return part;
 }
 
-std::uint32_t checked_material(std::int64_t index, std::size_t materials, const char* position) {
-  if (index < 0 || static_cast<std::uint64_t>(index) >= materials)
-    throw Fault{position, "material index " + std::to_string(index) +
-                              " is out of range: " + std::to_string(materials) + " materials"};
-  return static_cast<std::uint32_t>(index);
+void throw_ply_index(std::int64_t index, std::uint64_t count, const char* item, const char* items,
+                     const char* position) {
+  throw Fault{position, std::string(item) + " index " + std::to_string(index) +
+                            " is out of range: " + std::to_string(count) + " " + items};
+}
+
+void PlyFaces::finish_row_with_attributes(const char* position) {
+  // The file's coordinates are two for each corner, or they are ignored.
+  if (values.texcoord.size() != 2 * writer_.corners()) values.texcoord.clear();
+  const Rgba16 color = body_.attributes->face_color(values);
+  writer_.finish_face(position, [&](std::size_t t, const Triangle& corners) {
+    write_material(t);
+    body_.attributes->take_triangle(triangles_.first + t, corners, color, values.texcoord);
+  });
+  values.texcoord.clear();
 }
 
 }  // namespace voxdag

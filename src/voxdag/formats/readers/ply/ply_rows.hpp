@@ -1,37 +1,15 @@
 #pragma once
 /// The types and functions that the readers of ascii and binary PLY bodies share.
 #include <array>
-#include <string>
+#include <span>
 
-#include "voxdag/formats/readers/bad_vertex.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
+#include "voxdag/formats/readers/face_writer.hpp"
+#include "voxdag/formats/readers/ply/ply_attributes.hpp"
 #include "voxdag/formats/readers/ply/ply_header.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
-
-class PlyAttributes;
-
-/// Indices of the properties that belong to the mesh.
-struct PlyFields {
-  explicit PlyFields(const PlyHeader& header)
-      : vertex(header.elements[static_cast<std::size_t>(header.vertex)]),
-        face(header.elements[static_cast<std::size_t>(header.face)]),
-        axes{vertex.find({"x"}), vertex.find({"y"}), vertex.find({"z"})},
-        indices(face.find({"vertex_indices", "vertex_index"})),
-        material(header.materials.empty() ? -1 : face.find({"material_index"})) {
-    if (material >= 0) {
-      const PlyProperty& property = face.properties[static_cast<std::size_t>(material)];
-      if (property.count_type || !is_integer(property.type)) material = -1;
-    }
-  }
-
-  const PlyElement& vertex;
-  const PlyElement& face;
-  std::array<int, 3> axes;
-  int indices;
-  int material;  ///< -1: the file has no materials.
-};
 
 /// The input of the reader of a body.
 struct PlyBody {
@@ -52,8 +30,71 @@ void resize_ply_vertices(const PlyBody& body, MemoryReservation& memory, Mesh& m
 void resize_ply_triangles(const PlyBody& body, std::size_t triangles, MemoryReservation& memory,
                           Mesh& mesh);
 
-/// Returns the index if it is in range, else throws Fault.
-std::uint32_t checked_index(std::int64_t index, std::size_t vertices, const char* position);
-std::uint32_t checked_material(std::int64_t index, std::size_t materials, const char* position);
+/// Throws the fault that an index of an item is out of range.
+[[noreturn]] void throw_ply_index(std::int64_t index, std::uint64_t count, const char* item,
+                                  const char* items, const char* position);
+
+/// Returns the index of one of `count` items. Throws Fault if there is no such item.
+inline std::uint32_t checked_ply_index(std::int64_t index, std::uint64_t count, const char* item,
+                                       const char* items, const char* position) {
+  // As an unsigned number, a negative index is greater than any count.
+  if (static_cast<std::uint64_t>(index) >= count)
+    throw_ply_index(index, count, item, items, position);
+  return static_cast<std::uint32_t>(index);
+}
+
+/// The triangles that a run of faces becomes.
+struct PlyTriangles {
+  std::size_t first = 0;  ///< Index of the first one in the mesh.
+  std::span<Triangle> triangles;
+  std::span<std::uint32_t> materials;  ///< Of the triangles; empty: not wanted.
+};
+
+/// Returns the triangles [first, last) of a mesh.
+PlyTriangles ply_triangles(Mesh& mesh, std::size_t first, std::size_t last);
+
+/// Writes the triangles of faces, row by row, and passes their values to body.attributes.
+class PlyFaces {
+ public:
+  /// `body` and `vertices` must outlive the faces.
+  PlyFaces(const PlyBody& body, const AllVertices& vertices, const PlyTriangles& triangles)
+      : values(body.source.work().memory),
+        body_(body),
+        vertices_(vertices),
+        triangles_(triangles),
+        writer_(body.source, vertices, triangles.triangles) {}
+
+  PlyRowValues values;  ///< Of the row. The reader sets them.
+
+  /// Adds a corner of the row's face. `position` is that of the index. Throws Fault if the vertex
+  /// does not exist, OverMemory, Cancelled.
+  void add_corner(std::int64_t vertex, const char* position) {
+    writer_.add_corner(checked_ply_index(vertex, vertices_.count, "vertex", "vertices", position));
+  }
+  /// Throws Fault if the material does not exist.
+  void set_material(std::int64_t material, const char* position) {
+    material_ = checked_ply_index(material, body_.header.materials.size(), "material", "materials",
+                                  position);
+  }
+  /// Writes the face's triangles and starts the next row. Throws as FaceWriter::finish_face() does.
+  void finish_row(const char* position) {
+    if (body_.attributes != nullptr) return finish_row_with_attributes(position);
+    writer_.finish_face(position, [this](std::size_t t, const Triangle&) { write_material(t); });
+  }
+  /// Throws Error if some triangles are not written.
+  void check_full() const { writer_.check_full(); }
+
+ private:
+  void finish_row_with_attributes(const char* position);
+  void write_material(std::size_t triangle) {
+    if (!triangles_.materials.empty()) triangles_.materials[triangle] = material_;
+  }
+
+  const PlyBody& body_;
+  const AllVertices& vertices_;
+  const PlyTriangles triangles_;
+  FaceWriter writer_;
+  std::uint32_t material_ = 0;
+};
 
 }  // namespace voxdag

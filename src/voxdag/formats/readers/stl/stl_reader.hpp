@@ -1,7 +1,6 @@
 #pragma once
 /// STL, binary and ascii.
-#include "voxdag/formats/readers/mesh_source.hpp"
-#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/formats/readers/mesh_chunks.hpp"
 
 namespace voxdag {
 
@@ -14,6 +13,11 @@ namespace voxdag {
 /// Throws Error with the line or byte: malformed text, truncation, vertices that are not finite,
 /// 2^32 / 3 facets or more. Throws Error if there are no facets.
 Mesh read_stl(const MeshSource& source);
+
+/// Opens a binary STL file in chunks. Welds the corners of each chunk by itself. Returns null if
+/// read_stl() must read the file. Throws as open_mesh_chunks() does.
+std::unique_ptr<MeshChunks> open_stl_chunks(MappedFile file, const std::filesystem::path& path,
+                                            const ReadOptions& options, std::size_t chunk_bytes);
 
 /// Returns whether the bytes are a binary STL file whose size matches its number of facets.
 bool is_exact_binary_stl(std::string_view bytes);

@@ -1,0 +1,121 @@
+#pragma once
+/// The three passes over an OBJ file: statements are counted, vertices read, faces read. Each pass
+/// takes the chunks in any order, and several at a time.
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "voxdag/formats/readers/face_writer.hpp"
+#include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/formats/readers/name_table.hpp"
+#include "voxdag/formats/readers/obj/obj_lines.hpp"
+
+namespace voxdag {
+
+class ObjAttributes;
+struct ObjReferences;
+
+enum class ObjStatement { kVertex, kUv, kNormal, kFace, kMaterial, kLibrary, kOther };
+
+/// Removes the keyword from a line, which must not start with a blank, and returns the statement
+/// that it stands for.
+inline ObjStatement take_keyword(std::string_view& line) {
+  // Most lines have one of four short keywords. These are found without a search for their end.
+  const auto is_short = [&line](std::string_view keyword) {
+    if (!line.starts_with(keyword)) return false;
+    if (line.size() > keyword.size() && !is_blank(line[keyword.size()])) return false;
+    line.remove_prefix(keyword.size());
+    return true;
+  };
+  if (is_short("v")) return ObjStatement::kVertex;
+  if (is_short("f")) return ObjStatement::kFace;
+  if (is_short("vt")) return ObjStatement::kUv;
+  if (is_short("vn")) return ObjStatement::kNormal;
+  const std::string_view keyword = next_token(line);
+  if (keyword == "usemtl") return ObjStatement::kMaterial;
+  if (keyword == "mtllib") return ObjStatement::kLibrary;
+  return ObjStatement::kOther;
+}
+
+struct ObjCounts {
+  std::size_t vertices = 0, uvs = 0, normals = 0, triangles = 0;
+
+  ObjCounts& operator+=(const ObjCounts& other) {
+    vertices += other.vertices;
+    uvs += other.uvs;
+    normals += other.normals;
+    triangles += other.triangles;
+    return *this;
+  }
+  /// Counts the value that a statement defines, if it defines one.
+  void add_value(ObjStatement statement) {
+    vertices += statement == ObjStatement::kVertex;
+    uvs += statement == ObjStatement::kUv;
+    normals += statement == ObjStatement::kNormal;
+  }
+};
+
+/// The contents of a chunk.
+struct ObjChunk {
+  explicit ObjChunk(MemoryBudget* memory) : materials(memory), libraries(memory) {}
+
+  ObjCounts counts;
+  NameTable materials, libraries;   ///< Arguments of `usemtl` and `mtllib`.
+  std::uint32_t last_material = 0;  ///< Index into `materials` of the last `usemtl`.
+  bool has_faces = false, has_faces_before_material = false;
+  bool has_colors = false;  ///< Some vertex has six numbers.
+};
+
+/// An OBJ file in chunks. All functions throw Fault at malformed lines, OverMemory and Cancelled.
+class ObjFile {
+ public:
+  /// `source` must outlive the file.
+  ObjFile(const MeshSource& source, std::size_t chunk_bytes);
+
+  const LineChunks& chunks() const { return chunks_; }
+  char line_end() const { return chunks_.line_end; }
+
+  /// Looks for colours of vertices only if the appearance is wanted.
+  ObjChunk count(std::string_view chunk, ReadParts parts) const;
+  /// Reads the vertices of a chunk. Returns whether all are finite. If `attributes` is not null,
+  /// also reads colours, texture coordinates and normals; `seen` counts what precedes the chunk.
+  bool read_vertices(std::string_view chunk, std::span<Vec3f> vertices, ObjCounts seen,
+                     ObjAttributes* attributes) const;
+  /// Returns the start of the line that defines vertex `index` of a chunk.
+  const char* find_vertex(std::string_view chunk, std::uint64_t index) const;
+  /// Calls body(statement, the rest of its line, start of its line in the file) for each statement.
+  template <class Body>
+  void for_each_statement(std::string_view chunk, const Body& body) const {
+    for_each_line(chunk, line_end(), source_.work().memory,
+                  [&](std::string_view line, const char* position) {
+                    const ObjStatement statement = take_keyword(line);
+                    body(statement, line, position);
+                  });
+  }
+
+ private:
+  const MeshSource& source_;
+  LineChunks chunks_;
+};
+
+/// Reads the faces of a chunk, one after the other: the third pass, when all vertices are known.
+class ObjFaces {
+ public:
+  /// Writes to `triangles`. If `attributes` is not null, also sets the references of the triangles.
+  ObjFaces(const MeshSource& source, const AllVertices& vertices, std::span<Triangle> triangles,
+           ObjAttributes* attributes);
+
+  /// Reads a face line that starts at `position` in the file. `seen` counts what precedes it.
+  /// Returns the number of triangles. Throws Fault, Error, OverMemory, Cancelled.
+  std::size_t read(std::string_view line, const char* position, const ObjCounts& seen);
+  /// Throws Error if some triangles are not written.
+  void check_full() const { writer_.check_full(); }
+
+ private:
+  const AllVertices& vertices_;
+  ObjAttributes* attributes_;
+  FaceWriter writer_;
+  CountedVector<ObjReferences> references_;  ///< Of the corners of the face.
+};
+
+}  // namespace voxdag
