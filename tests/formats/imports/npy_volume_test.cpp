@@ -131,7 +131,8 @@ TEST_F(NpyVolume, RealNumbersOf16BitsAreExact) {
   EXPECT_EQ(static_cast<float>(Half{0xFC00}), -HUGE_VALF);
   const std::vector<double> values = {0, 0.5, -0.0, 3, std::nan(""), -1, 0x1p-24, 2};
   std::string data;
-  for (const double v : values) append(data, std::isnan(v) ? 0x7E01 : half_of(v), 2);
+  for (const double v : values)
+    append(data, std::uint64_t{std::isnan(v) ? std::uint16_t{0x7E01} : half_of(v)}, 2);
   write("a.npy", npy("<f2", true, "8, 1, 1", data));
   EXPECT_EQ(read("a.npy").voxels,
             (std::vector<Vec3i>{{1, 0, 0}, {3, 0, 0}, {5, 0, 0}, {6, 0, 0}, {7, 0, 0}}));
@@ -201,8 +202,8 @@ TEST_F(NpyVolume, RowsMayHaveAnyTypeAndOrder) {
 TEST_F(NpyVolume, RowsMayHaveNamedFields) {
   std::string data;
   append(data, std::bit_cast<std::uint64_t>(0.5), 8);  // Y
-  append(data, 7, 1);                                  // tag
-  append(data, std::bit_cast<std::uint32_t>(2.0f), 4, true);
+  append(data, std::uint64_t{7}, 1);                   // tag
+  append(data, std::uint64_t{std::bit_cast<std::uint32_t>(2.0f)}, 4, true);
   append(data, std::bit_cast<std::uint64_t>(-3.0), 8);
   for (const int c : {65535, 128 * 257, 0}) append(data, static_cast<std::uint64_t>(c), 2);
   write("a.npy", npy("[('Y', '<f8'), ('tag', '|u1'), ('X', '>f4'), ('Z', '<f8'), ('Red', '<u2'), "

@@ -133,8 +133,8 @@ TEST_F(Nrrd, LayersOfAListAreJoined) {
       for (int x = 0; x < 4; ++x) {
         const std::int16_t a = layers.at({x, y, z}), b = layers.at({x, y, z + 5});
         if (a != 0 || b != 0) joined.push_back({x, y, z});
-        append(mixed, static_cast<std::uint16_t>(a), 2);
-        append(mixed, static_cast<std::uint16_t>(b), 2);
+        append(mixed, std::uint64_t{static_cast<std::uint16_t>(a)}, 2);
+        append(mixed, std::uint64_t{static_cast<std::uint16_t>(b)}, 2);
       }
   write("v.nrrd", header + "sizes: 2 4 3 5\nkinds: list domain domain domain\n\n" + mixed);
   EXPECT_EQ(read("v.nrrd").voxels, joined);

@@ -13,6 +13,8 @@ namespace {
 /// Spacings that differ by less are equal but for rounding.
 constexpr double kSameSpacing = 1e-5;
 constexpr double kMaxCoordinate = 1e30;
+/// Cubes of a voxel: far more than real volumes need.
+constexpr double kMaxCubes = 4096;
 
 std::string text_of(double value) {
   char text[32];
@@ -65,6 +67,11 @@ VolumeMap::VolumeMap(const std::filesystem::path& path, const VolumeSize& size,
   check_placement(path, spacing, placement);
   const double least = std::min({spacing.x, spacing.y, spacing.z}),
                greatest = std::max({spacing.x, spacing.y, spacing.z});
+  if (const double cubes = spacing.x / least * (spacing.y / least) * (spacing.z / least);
+      !(cubes <= kMaxCubes))
+    throw Error(path.string(), "header",
+                "the voxels are boxes of " + text_of(spacing.x) + " x " + text_of(spacing.y) +
+                    " x " + text_of(spacing.z) + ", which would become more than 4096 cubes each");
   const bool are_cubes = greatest <= least * (1 + kSameSpacing);
   const double side = are_cubes ? spacing.x : least;
   const std::array<int, 3> world = nearest_axes(placement.steps);

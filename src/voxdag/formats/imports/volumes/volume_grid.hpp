@@ -28,7 +28,8 @@ class VolumeMap {
   explicit VolumeMap(const Grid& grid = {}) : grid_(grid) {}
   /// Adds a warning if the voxels are no cubes, or the axes are turned otherwise: then those of the
   /// world that are nearest take their places. Throws Error for steps whose length is not between
-  /// 1e-30 and 1e30, a place beyond 1e30, and more cubes a side than a grid can have.
+  /// 1e-30 and 1e30, a place beyond 1e30, more than 4096 cubes for a voxel, and more cubes a side
+  /// than a grid can have.
   VolumeMap(const std::filesystem::path& path, const VolumeSize& size,
             const VolumePlacement& placement, std::vector<std::string>& warnings);
 
