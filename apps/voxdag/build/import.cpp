@@ -86,11 +86,6 @@ void import(const ImportArguments& arguments, Session& session) {
   model.save(arguments.output, arguments.compact, work);
   const SvdagCounts& counts = model.metadata().counts;
   session.bar.clear();
-  if (result.not_finite > 0)
-    print_warnings(
-        {fmt::format("{}: {} of {} points are not finite and are left out", session.subject,
-                     with_commas(result.not_finite), with_commas(result.read))},
-        session);
   warn_if_empty(counts.voxels, arguments.output, session);
   if (session.json) {
     const nlohmann::ordered_json json = {{"read", result.read},
@@ -105,8 +100,11 @@ void import(const ImportArguments& arguments, Session& session) {
     std::error_code unknown;
     const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
     fmt::print(
-        "{}: {} read{}, {} voxels of {}³, {}, {}\n", arguments.output, with_commas(result.read),
+        "{}: {} read{}{}, {} voxels of {}³, {}, {}\n", arguments.output, with_commas(result.read),
         result.outside > 0 ? fmt::format(", {} of them outside", with_commas(result.outside)) : "",
+        result.not_finite > 0
+            ? fmt::format(", {} of them not finite", with_commas(result.not_finite))
+            : "",
         with_commas(counts.voxels), with_commas(model.grid().resolution()),
         human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
         human_seconds(watch.since_start()));

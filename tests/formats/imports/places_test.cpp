@@ -191,8 +191,8 @@ TEST_F(Places, AVolumeWithoutAPlaceTakesTheOneThatIsGiven) {
 
 /// Returns, for voxels in a volume whose axes lie along those of the world, the cubes of a side
 /// that have their centres in one of them, by their world places.
-std::map<VoxelKey, int> brute_cubes(const VolumeSize& size, const VolumePlacement& placement,
-                                    const Grid& grid, const std::vector<Vec3i>& voxels) {
+std::map<VoxelKey, int> brute_cubes(const VolumePlacement& placement, const Grid& grid,
+                                    const std::vector<Vec3i>& voxels) {
   std::map<VoxelKey, int> cubes;
   const int side = static_cast<int>(grid.resolution());
   for (const Vec3i v : voxels)
@@ -209,7 +209,6 @@ std::map<VoxelKey, int> brute_cubes(const VolumeSize& size, const VolumePlacemen
           }
           if (is_inside) ++cubes[{x, y, z}];
         }
-  static_cast<void>(size);
   return cubes;
 }
 
@@ -244,7 +243,7 @@ TEST_F(Places, AxesAndBoxesOfAVolumeAreFollowed) {
           for (const Vec3d p : batch.places)
             ++found[{static_cast<int>(p.x), static_cast<int>(p.y), static_cast<int>(p.z)}];
         });
-        EXPECT_EQ(found, brute_cubes(size, placement, map.grid(), voxels))
+        EXPECT_EQ(found, brute_cubes(placement, map.grid(), voxels))
             << axes[0] << axes[1] << axes[2] << " " << signs << " " << spacing.y;
       }
   } while (std::next_permutation(axes.begin(), axes.end()));

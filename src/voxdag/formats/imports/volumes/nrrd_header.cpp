@@ -265,6 +265,9 @@ class NrrdHeaderParser {
         const auto value = number_in<double>(*spacings, words[first_axis() + axis]);
         // NaN: not known.
         if (std::isnan(value)) continue;
+        if (!(value > 0))
+          fail(spacings->line, "the spacing of the voxels must be between 1e-30 and 1e30, not " +
+                                   std::string(words[first_axis() + axis]));
         placement.steps[axis] = placement.steps[axis] * value;
         placement.is_known = true;
       }

@@ -56,8 +56,8 @@ void check_placement(const std::filesystem::path& path, const Vec3d& spacing,
 
 }  // namespace
 
-double VolumeMap::Axis::first_cube(double voxel) const {
-  return std::ceil(voxel * cubes_per_voxel - 0.5);
+double VolumeMap::Axis::first_cube(double counted) const {
+  return std::ceil(counted * cubes_per_voxel - 0.5);
 }
 
 VolumeMap::VolumeMap(const std::filesystem::path& path, const VolumeSize& size,
@@ -86,12 +86,13 @@ VolumeMap::VolumeMap(const std::filesystem::path& path, const VolumeSize& size,
     const double step = spacing[static_cast<int>(i)], ratio = are_cubes ? 1 : step / side,
                  whole = std::round(ratio);
     axis.cubes_per_voxel = std::abs(ratio - whole) <= kSameSpacing * whole ? whole : ratio;
-    const double voxels = static_cast<double>(size[i]);
-    axis.cubes = axis.first_cube(voxels);
-    cubes[static_cast<std::size_t>(axis.world)] = static_cast<std::uint64_t>(axis.cubes);
+    axis.voxels = static_cast<double>(size[i]);
+    cubes[static_cast<std::size_t>(axis.world)] =
+        static_cast<std::uint64_t>(axis.first_cube(axis.voxels));
     const double centre = placement.first_centre ? (*placement.first_centre)[axis.world]
                                                  : (axis.is_mirrored ? -step : step) / 2;
-    origin[axis.world] = axis.is_mirrored ? centre + step / 2 - voxels * step : centre - step / 2;
+    origin[axis.world] =
+        axis.is_mirrored ? centre + step / 2 - axis.voxels * step : centre - step / 2;
     is_identity_ &= axis.world == static_cast<int>(i) && !axis.is_mirrored && ratio == 1;
   }
   check_volume_size(path, cubes);
@@ -112,10 +113,10 @@ void VolumeMap::visit_cubes(const VoxelBatch& voxels, const VisitBatch& visit) c
     Vec3d lo, hi;
     for (int v = 0; v < 3; ++v) {
       const Axis& axis = axes_[static_cast<std::size_t>(v)];
-      const double first = axis.first_cube(voxels.places[i][v]),
-                   end = axis.first_cube(voxels.places[i][v] + 1);
-      lo[axis.world] = axis.is_mirrored ? axis.cubes - end : first;
-      hi[axis.world] = axis.is_mirrored ? axis.cubes - first : end;
+      const double place = voxels.places[i][v],
+                   before = axis.is_mirrored ? axis.voxels - 1 - place : place;
+      lo[axis.world] = axis.first_cube(before);
+      hi[axis.world] = axis.first_cube(before + 1);
     }
     for (double z = lo.z; z < hi.z; ++z)
       for (double y = lo.y; y < hi.y; ++y)

@@ -42,11 +42,10 @@ class VolumeMap {
   struct Axis {
     int world = 0;
     bool is_mirrored = false;
-    double cubes_per_voxel = 1;
-    double cubes = 0;  ///< Of all voxels.
+    double voxels = 0, cubes_per_voxel = 1;
 
-    /// Returns the first cube of a voxel that has its centre in it.
-    double first_cube(double voxel) const;
+    /// Returns the first cube whose centre does not lie before the voxels that are counted.
+    double first_cube(double counted) const;
   };
 
   Grid grid_;
