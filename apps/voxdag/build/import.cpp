@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
@@ -30,12 +31,27 @@ struct ImportArguments {
 
 /// Throws Error for options that the kind of file does not have, or needs.
 void check_grid_options(const VoxelSource& source, const ImportOptions& options) {
+  const bool has_place = options.voxel_size || options.origin;
   if (source.has_points()) {
-    if (!options.levels && !options.voxel_size)
+    if (!options.levels && !options.voxel_size && !source.grid())
       throw Error("", "", "holds points, which need -r or --voxel-size");
-  } else if (options.voxel_size || options.bounds) {
-    throw Error("", "", "holds voxels; --voxel-size and --bounds are for points");
+    if (options.levels && options.voxel_size)
+      throw Error("", "", "holds points; of -r and --voxel-size one is enough");
+    if (options.origin && (options.bounds || !options.voxel_size))
+      throw Error("", "", "holds points; --origin goes with --voxel-size, and not with --bounds");
+  } else if (options.bounds) {
+    throw Error("", "", "holds voxels; --bounds is for points");
+  } else if (has_place && source.has_place()) {
+    throw Error("", "",
+                "says itself where its voxels lie: --voxel-size and --origin are for files that do "
+                "not");
   }
+}
+
+std::vector<std::string> warnings_of(const VoxelSource& source, const std::string& name) {
+  std::vector<std::string> warnings = source.warnings();
+  for (std::string& warning : warnings) warning.insert(0, name + ": ");
+  return warnings;
 }
 
 /// Imports the file. Errors name it.
@@ -45,13 +61,19 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
   options.folder = std::filesystem::path(arguments.output).parent_path();
   if (options.folder.empty()) options.folder = ".";
   return with_file_name(session.subject, [&] {
-    const std::unique_ptr<VoxelSource> source =
-        open_voxel_source(session.subject, {arguments.threshold});
-    print_warnings(source->warnings(), session);
+    const std::unique_ptr<VoxelSource> source = open_voxel_source(
+        session.subject, {arguments.threshold, !options.voxel_size && !options.origin});
+    print_warnings(warnings_of(*source, session.subject), session);
     check_grid_options(*source, options);
     return import_model(*source, options,
                         std::filesystem::path(session.subject).filename().string(), work);
   });
+}
+
+double parse_color_bound(const std::string& text) {
+  const double bound = parse_finite(text);
+  if (!(bound >= 0 && bound <= 1)) throw std::invalid_argument("must be from 0 to 1");
+  return bound;
 }
 
 void import(const ImportArguments& arguments, Session& session) {
@@ -68,6 +90,7 @@ void import(const ImportArguments& arguments, Session& session) {
   if (session.json) {
     const nlohmann::ordered_json json = {{"read", result.read},
                                          {"outside", result.outside},
+                                         {"not_finite", result.not_finite},
                                          {"voxels", counts.voxels},
                                          {"dag_nodes", counts.dag_nodes()},
                                          {"seconds", watch.since_start()},
@@ -77,8 +100,11 @@ void import(const ImportArguments& arguments, Session& session) {
     std::error_code unknown;
     const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
     fmt::print(
-        "{}: {} read{}, {} voxels of {}³, {}, {}\n", arguments.output, with_commas(result.read),
+        "{}: {} read{}{}, {} voxels of {}³, {}, {}\n", arguments.output, with_commas(result.read),
         result.outside > 0 ? fmt::format(", {} of them outside", with_commas(result.outside)) : "",
+        result.not_finite > 0
+            ? fmt::format(", {} of them not finite", with_commas(result.not_finite))
+            : "",
         with_commas(counts.voxels), with_commas(model.grid().resolution()),
         human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
         human_seconds(watch.since_start()));
@@ -99,21 +125,25 @@ void add_import_command(const Command& program, Session& session) {
                                       "order. Each point sets the voxel that it lies in. The DAG "
                                       "gets the colours of the file.");
   command
-      .text("file", session.subject, "FILE",
-            "Points: .ply, .las, .pcd, .xyz, .txt, .csv, or .npy of N x 3 floats. Voxels: .vox, "
-            ".binvox, or .npy of N x 3 int32. Volumes: .npy of X x Y x Z, .nrrd, .nhdr, .nii, "
-            ".nii.gz, .vdb, or a folder of .png slices")
+      .text(
+          "file", session.subject, "FILE",
+          "Points: .ply, .las, .pcd, .npy of N x 3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. "
+          "Voxels: .vox, .binvox, or .npy of N x 3 integers. Volumes: .npy of X x Y x Z, .nrrd, "
+          ".nhdr, .nii, "
+          ".nii.gz, .vdb, or a folder of .png slices")
       .required();
   command.text("-o,--output", arguments->output, "OUT", "The .vdag file to write").required();
   ImportOptions& options = arguments->options;
-  const Option resolution = command.parsed(
-      "-r,--resolution", options.levels, parse_levels, "N",
-      "Voxels per side: a power of two from 4 to 1048576 (default for voxels: that of "
-      "FILE, or the least that holds them)");
-  command
-      .parsed("--voxel-size", options.voxel_size, parse_positive, "SIZE",
-              "For points, instead of -r: side of a voxel, in the units of the points")
-      .not_with(resolution);
+  command.parsed("-r,--resolution", options.levels, parse_levels, "N",
+                 "Voxels per side: a power of two from 4 to 1048576 (default for voxels: that of "
+                 "FILE, or the least that holds them)");
+  command.parsed(
+      "--voxel-size", options.voxel_size, parse_positive, "SIZE",
+      "For points, instead of -r: side of a voxel, in the units of the points; the grid "
+      "then begins half a voxel below the least coordinates. For voxels whose file does not "
+      "say it: side of a voxel");
+  command.parsed("--origin", options.origin, parse_vec3, "X,Y,Z",
+                 "Lower corner of the grid, for the same files (default: 0,0,0 for voxels)");
   command.parsed("--bounds", options.bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
                  "For points: box that the grid holds; points outside are left out (default: the "
                  "bounding box of the points)");
@@ -123,8 +153,9 @@ void add_import_command(const Command& program, Session& session) {
   const Option no_colors =
       command.flag("--no-color", arguments->is_grey, "Leave out the colours of FILE");
   command
-      .number("--color-bound", options.color_bound, NumberRange::from(0, 1), "DIFFERENCE",
-              "Largest error of a stored colour, 0 to 1, as for voxdag build (0: lossless)")
+      .parsed("--color-bound", options.color_bound, parse_color_bound, "DIFFERENCE",
+              "Largest error of a stored colour, 0 to 1, as for voxdag build; 0 is lossless "
+              "(default: 0.05, of .vox 0)")
       .not_with(no_colors);
   command.flag("--compact", arguments->compact, "Write the compact form");
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",

@@ -12,17 +12,18 @@ namespace voxdag {
 
 using ColoredVoxels = std::map<VoxelKey, Rgb8>;
 
-/// Reads a file with the importers. Voxels without colour are black.
+/// Reads a file with the importers, by its own coordinates. Voxels without colour are black.
 inline ColoredVoxels read_back(const std::filesystem::path& path, Vec3i moved_by = {}) {
   ColoredVoxels voxels;
-  open_voxel_source(path)->visit_all([&](const VoxelBatch& batch) {
-    for (std::size_t i = 0; i < batch.places.size(); ++i) {
-      const Vec3i v = Vec3i(batch.places[i]) + moved_by;
-      EXPECT_TRUE(
-          voxels.try_emplace({v.x, v.y, v.z}, batch.colors.empty() ? Rgb8{} : batch.colors[i])
-              .second);
-    }
-  });
+  open_voxel_source(path, {.threshold = {}, .use_placement = false})
+      ->visit_all([&](const VoxelBatch& batch) {
+        for (std::size_t i = 0; i < batch.places.size(); ++i) {
+          const Vec3i v = Vec3i(batch.places[i]) + moved_by;
+          EXPECT_TRUE(
+              voxels.try_emplace({v.x, v.y, v.z}, batch.colors.empty() ? Rgb8{} : batch.colors[i])
+                  .second);
+        }
+      });
   return voxels;
 }
 

@@ -29,7 +29,10 @@ void put(std::string& bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
-std::size_t header_bytes(int minor) { return minor == 4 ? 375 : minor == 3 ? 235 : 227; }
+std::size_t header_bytes(int minor) {
+  constexpr std::size_t kBytes[] = {227, 227, 227, 235, 375, 393};
+  return kBytes[minor];
+}
 
 std::string las_of(const LasFile& las) {
   const auto format = static_cast<std::size_t>(las.format);
@@ -46,7 +49,7 @@ std::string las_of(const LasFile& las) {
   put(bytes, 105, static_cast<std::uint16_t>(record_bytes));
   const std::size_t count = las.points.size();
   if (las.format < 6) put(bytes, 107, static_cast<std::uint32_t>(count));
-  if (las.minor == 4) put(bytes, 247, static_cast<std::uint64_t>(count));
+  if (las.minor >= 4) put(bytes, 247, static_cast<std::uint64_t>(count));
   for (int axis = 0; axis < 3; ++axis) {
     put(bytes, 131 + 8 * static_cast<std::size_t>(axis), kScale[axis]);
     put(bytes, 155 + 8 * static_cast<std::size_t>(axis), kOffset[axis]);
@@ -88,8 +91,8 @@ PointCloud cloud_of(const LasFile& las) {
 }
 
 TEST_F(LasPointsTest, EveryVersionAndFormatIsRead) {
-  for (int minor = 0; minor <= 4; ++minor)
-    for (int format = 0; format <= (minor == 4 ? 10 : 5); ++format) {
+  for (int minor = 0; minor <= 5; ++minor)
+    for (int format = 0; format <= (minor >= 4 ? 10 : 5); ++format) {
       LasFile las = random_las(minor, format, 700, static_cast<unsigned>(100 * minor + format));
       las.extra_bytes = format % 3;
       EXPECT_EQ(read(las_of(las)), cloud_of(las)) << minor << " " << format;
@@ -158,6 +161,51 @@ TEST_F(LasPointsTest, TheLegacyCountWinsWithAWarning) {
   EXPECT_TRUE(open_voxel_source(path_)->warnings().empty());
 }
 
+TEST_F(LasPointsTest, FormatsFrom6OnHaveTheLongCountOnly) {
+  const LasFile las = random_las(4, 7, 3, 5);
+  for (const std::uint32_t legacy : {0u, 1u, 4'294'967'295u}) {
+    std::string bytes = las_of(las);
+    put(bytes, 107, legacy);
+    EXPECT_EQ(read(bytes), cloud_of(las));
+    EXPECT_TRUE(open_voxel_source(path_)->warnings().empty());
+  }
+  // A writer that fills the legacy count only.
+  std::string bytes = las_of(las);
+  put(bytes, 107, std::uint32_t{3});
+  put(bytes, 247, std::uint64_t{0});
+  EXPECT_EQ(read(bytes), cloud_of(las));
+}
+
+TEST_F(LasPointsTest, HeadersOf1Point3MayEndEarly) {
+  const LasFile las = random_las(3, 2, 3, 5);
+  std::string bytes = las_of(las);
+  bytes.erase(227, 8);
+  put(bytes, 94, std::uint16_t{227});
+  put(bytes, 96, static_cast<std::uint32_t>(227 + las.skipped));
+  EXPECT_EQ(read(bytes), cloud_of(las));
+}
+
+TEST_F(LasPointsTest, PointsOfALatticeSetAVoxelEach) {
+  LasFile las;
+  las.format = 0;
+  for (int i = 0; i < 64; ++i) las.points.push_back({1'000 + 50 * i, -7 * 50, 4'649'776});
+  std::string bytes = las_of(las);
+  for (int axis = 0; axis < 3; ++axis) {
+    put(bytes, 131 + 8 * static_cast<std::size_t>(axis), 0.001);
+    put(bytes, 155 + 8 * static_cast<std::size_t>(axis), axis == 0 ? 500'000.0 : 0.1);
+  }
+  write_text(path_, bytes);
+  ImportOptions options;
+  options.voxel_size = 0.05;
+  options.folder = dir_.path();
+  std::vector<Vec3i> line;
+  for (int i = 0; i < 64; ++i) line.push_back({i, 0, 0});
+  EXPECT_EQ(import_voxels(*open_voxel_source(path_), options).dag, brute_svdag(6, line));
+  // The same points on planes of a grid that is given.
+  options.bounds = Box3d{{500'001, -0.25, 4'649.876}, {500'004.2, 2, 4'650}};
+  EXPECT_EQ(import_voxels(*open_voxel_source(path_), options).dag, brute_svdag(6, line));
+}
+
 TEST_F(LasPointsTest, CompressedFilesAreRefusedByName) {
   std::string bytes = las_of(random_las(2, 3, 3, 1));
   put(bytes, 104, std::uint8_t{3 + 128});
@@ -184,14 +232,16 @@ TEST_F(LasPointsTest, BadHeadersAreRefusedWithTheirPlace) {
   };
   expect_error("", "byte 0: is not a LAS file");
   expect_error("LASF", "byte 4: the file ends inside its header");
-  expect(24, std::uint8_t{2}, "byte 24: LAS version 2.4 is not 1.0 to 1.4");
-  expect(25, std::uint8_t{5}, "LAS version 1.5");
+  expect(24, std::uint8_t{2}, "byte 24: LAS version 2.4 is not 1.0 to 1.5");
+  expect(25, std::uint8_t{6}, "LAS version 1.6");
   expect(94, std::uint16_t{374}, "byte 94: a header of 374 bytes is too short for version 1.4");
   expect(96, std::uint32_t{374}, "byte 96: the point records start inside the header");
   expect(96, std::uint32_t{4'000'000'000}, "byte 96: the point records start beyond the end");
   expect(104, std::uint8_t{11}, "byte 104: point format 11 is not 0 to 10");
   expect(105, std::uint16_t{35}, "byte 105: point records of 35 bytes are too short for format 7");
-  expect(107, std::uint32_t{4'294'967'295}, "byte 107: the file ends after 3 of 4294967295 points");
+  std::string legacy = las_of(random_las(2, 2, 3, 2));
+  put(legacy, 107, std::uint32_t{4'294'967'295});
+  expect_error(legacy, "byte 107: the file ends after 3 of 4294967295 points");
   expect(247, std::uint64_t{4}, "byte 247: the file ends after 3 of 4 points");
   expect(247, UINT64_MAX, "byte 247: the file ends after 3 of 18446744073709551615 points");
   expect(131, 0.0, "byte 131: scale and offset do not give finite coordinates");

@@ -241,20 +241,57 @@ TEST_F(PcdPointsTest, PackedColoursAreIntegersOrFloats) {
 }
 
 TEST_F(PcdPointsTest, PointsThatAreNotFiniteAreLeftOut) {
-  PointCloud cloud = random_cloud(100, 6), kept;
+  PointCloud cloud = random_cloud(100, 6);
+  std::vector<Vec3d> kept;
   for (std::size_t i = 0; i < cloud.places.size(); ++i) {
     if (i % 3 == 0) cloud.places[i].x = std::nan("");
     if (i % 7 == 0) cloud.places[i].z = -HUGE_VAL;
-    if (!is_finite(cloud.places[i])) continue;
-    kept.places.push_back(cloud.places[i]);
-    kept.colors.push_back(cloud.colors[i]);
+    if (is_finite(cloud.places[i])) kept.push_back(cloud.places[i]);
   }
   for (const char* const kind : kKinds) {
     PcdFile pcd = plain(kind);
     pcd.fields.push_back({"rgb", 'U', 4});
     pcd.size = "WIDTH 20\nHEIGHT 5\nPOINTS 100\n";
-    EXPECT_EQ(read(pcd_of(pcd, cloud)), kept) << kind;
+    write_text(path_, pcd_of(pcd, cloud));
+    ImportOptions options;
+    options.levels = 6;
+    options.folder = dir_.path();
+    const ImportResult result = import_voxels(*open_voxel_source(path_), options);
+    EXPECT_EQ(result.read, 100u);
+    EXPECT_EQ(result.not_finite, 100 - kept.size());
+    const PointLocator locator(result.grid, kFloatCoordinates);
+    std::vector<Vec3i> voxels;
+    for (const Vec3d p : kept) voxels.push_back(locator.voxel_in_box(p));
+    EXPECT_EQ(result.dag, brute_svdag(6, voxels)) << kind;
   }
+}
+
+TEST_F(PcdPointsTest, FieldsMayHaveNoValues) {
+  const PointCloud cloud = random_cloud(100, 3);
+  for (const char* const kind : kKinds) {
+    PcdFile pcd = plain(kind);
+    pcd.fields.insert(pcd.fields.begin() + 1, {"_", 'U', 1, 0});
+    pcd.fields.push_back({"_", 'U', 4, 0});
+    EXPECT_EQ(read(pcd_of(pcd, cloud)), (PointCloud{cloud.places, {}})) << kind;
+  }
+  expect_error("FIELDS x y z\nCOUNT 0 0 0\nPOINTS 1\nDATA binary\n", "the points have no values");
+  expect_error("FIELDS x y z\nCOUNT 1 0 1\nPOINTS 1\nDATA ascii\n1 2 3\n",
+               "field 'y' has 0 values instead of one");
+}
+
+TEST_F(PcdPointsTest, CompressedDataMayBeStored) {
+  const PointCloud cloud = random_cloud(5'000, 9);
+  PcdFile pcd = plain("binary");
+  pcd.fields.push_back({"rgb", 'U', 4});
+  std::string bytes = pcd_of(pcd, 5'000, [](std::size_t, const std::string&, int) { return 0.0; });
+  bytes = bytes.substr(0, bytes.find("DATA")) + "DATA binary_compressed\n";
+  for (int i = 0; i < 2; ++i) append(bytes, std::uint32_t{5'000 * 16});
+  for (int axis = 0; axis < 3; ++axis)
+    for (const Vec3d p : cloud.places) append(bytes, static_cast<float>(p[axis]));
+  for (const Rgb8 c : cloud.colors)
+    append(bytes,
+           static_cast<std::uint32_t>(c[0]) << 16 | static_cast<std::uint32_t>(c[1]) << 8 | c[2]);
+  EXPECT_EQ(read(bytes), cloud);
 }
 
 TEST_F(PcdPointsTest, OldHeadersLackLines) {
@@ -291,11 +328,11 @@ TEST_F(PcdPointsTest, BadHeadersAreRefusedWithTheirPlace) {
   expect_error(header("FIELDS x y z\nSIZE 4 4 4 4\n"), "SIZE has more values than FIELDS");
   expect_error(header("FIELDS x y z\nSIZE 4 4 9\n"), "SIZE '9' is not a whole number from 1 to 8");
   expect_error(header("FIELDS x y z\nTYPE F F D\n"), "type 'D' is not F, I or U");
-  expect_error(header("FIELDS x y z\nCOUNT 1 1 0\n"), "COUNT '0' is not a whole number from 1");
+  expect_error(header("FIELDS x y z\nCOUNT 1 1 -1\n"), "COUNT '-1' is not a whole number from 0");
   expect_error(header("FIELDS x y z\nSIZE 4 4 2\nPOINTS 1\n"), "'z' has type F with 2 bytes");
   expect_error(header("FIELDS x y w\nPOINTS 1\n"), "header: has no field 'z'");
   expect_error("FIELDS x y z\nCOUNT 1 1 2\nPOINTS 1\nDATA ascii\n1 2 3 4\n",
-               "header: field 'z' has more than one value");
+               "header: field 'z' has 2 values instead of one");
   expect_error(header("FIELDS x y z\nPOINTS -1\n"), "POINTS '-1' is not a whole number");
   expect_error(header("FIELDS x y z\nWIDTH 2\nHEIGHT 2\nPOINTS 3\n"), "not WIDTH times HEIGHT");
   expect_error(header("FIELDS x y z\nWIDTH 4294967296\nHEIGHT 4294967296\nPOINTS 0\n"),

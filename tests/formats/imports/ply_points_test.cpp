@@ -198,15 +198,7 @@ TEST_F(PlyPointsTest, BadFilesAreRefusedWithTheirPlace) {
   expect_error(text("1", "1 2 x\n"), "line 8: coordinate 'x' is not a number");
   expect_error(text("1", "1 2\n3\n"), "line 8: the row ends before property 'z'");
   expect_error(text("1", "1 2 3 4\n"), "line 8: the row has '4' after its last property");
-  expect_error(text("2", "1 2 3\n1 nan 3\n"), "line 9: the point is not finite");
-  expect_error(text("1", "1 2 1e999\n"), "line 8: the point is not finite");
   expect_error("ply\nformat ascii 1.0\nelement face 0\nend_header\n", "without a 'vertex' element");
-  PlyWriter ply("binary_little_endian");
-  ply.line("element vertex 1").line("property float x").line("property float y");
-  ply.line("property float z").line("end_header");
-  const std::string place = "byte " + std::to_string(ply.bytes().size());
-  ply.value(1.0f).value(HUGE_VALF).value(0.0f);
-  expect_error(ply.bytes(), place + ": the point is not finite");
   // Counts of two elements that fit alone, but not together.
   PlyWriter two("binary_big_endian");
   two.line("element a 3").line("property int i").line("element vertex 1").line("property int x");
@@ -218,6 +210,57 @@ TEST_F(PlyPointsTest, BadFilesAreRefusedWithTheirPlace) {
   list.line("property int x").line("property int y").line("property int z").line("end_header");
   expect_error(list.value(std::uint32_t{4'000'000'000}).bytes(),
                "a list of 4000000000 items does not fit");
+}
+
+TEST_F(PlyPointsTest, PointsThatAreNotFiniteAreCounted) {
+  ImportOptions options;
+  options.voxel_size = 1;
+  options.folder = dir_.path();
+  write_text(path_, std::string("ply\nformat ascii 1.0\nelement vertex 4\n") + kHeader +
+                        "1 2 3\n1 nan 3\n1 2 1e999\n-inf 0 0\n");
+  ImportResult result = import_voxels(*open_voxel_source(path_), options);
+  EXPECT_EQ(result.read, 4u);
+  EXPECT_EQ(result.not_finite, 3u);
+  EXPECT_EQ(result.dag, brute_svdag(2, {{0, 0, 0}}));
+  PlyWriter ply("binary_little_endian");
+  ply.line("element vertex 2").line("property float x").line("property float y");
+  ply.line("property float z").line("end_header");
+  ply.value(1.0f).value(HUGE_VALF).value(0.0f).value(1.0f).value(2.0f).value(3.0f);
+  write_text(path_, ply.bytes());
+  result = import_voxels(*open_voxel_source(path_), options);
+  EXPECT_EQ(result.not_finite, 1u);
+}
+
+TEST_F(PlyPointsTest, ColoursOfRealNumbersMayGoTo255) {
+  const auto text = [](const std::string& names, const std::string& rows) {
+    return "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+           "property float z\n" +
+           names + "end_header\n" + rows;
+  };
+  const std::string rgb = "property float red\nproperty float green\nproperty double blue\n";
+  EXPECT_EQ(read(text(rgb, "0 0 0 255 128 0\n1 0 0 16.4 7.6 0\n")).colors,
+            (std::vector<Rgb8>{{255, 128, 0}, {16, 8, 0}}));
+  EXPECT_EQ(read(text(rgb, "0 0 0 1 0.5 0\n1 0 0 nan 1.9 -3\n")).colors,
+            (std::vector<Rgb8>{{255, 128, 0}, {0, 255, 0}}));
+}
+
+TEST_F(PlyPointsTest, GaussianSplatsHaveTheColourOfTheirFirstHarmonic) {
+  for (const char* const format : kFormats) {
+    PlyWriter ply(format);
+    ply.line("element vertex 2");
+    for (const char* name :
+         {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "opacity"})
+      ply.line(std::string("property float ") + name);
+    ply.line("end_header");
+    for (const float v : {1.0f, 2.0f, 3.0f, 0.0f, 0.0f, 0.0f, 1.7724539f, -1.7724539f, 0.0f, 5.0f})
+      ply.value(v);
+    ply.end_row();
+    for (const float v : {4.0f, 5.0f, 6.0f, 0.0f, 0.0f, 0.0f, 9.0f, -9.0f, 0.5f, 5.0f})
+      ply.value(v);
+    EXPECT_EQ(read(ply.end_row().bytes()),
+              (PointCloud{{{1, 2, 3}, {4, 5, 6}}, {{255, 0, 128}, {255, 0, 163}}}))
+        << format;
+  }
 }
 
 TEST_F(PlyPointsTest, FilesWithoutPointsAreEmpty) {

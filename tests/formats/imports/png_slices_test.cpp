@@ -88,6 +88,32 @@ TEST_F(PngSlicesTest, AlphaAndColorsDecide) {
             (std::vector<Vec3i>{{1, 0, 0}, {1, 1, 1}, {0, 1, 2}, {1, 0, 3}}));
 }
 
+TEST_F(PngSlicesTest, AlphaThatIs255EverywhereIsNoValue) {
+  new_folder();
+  const std::string pixels("\377\377\377\377\0\0\0\377", 8);
+  add("1.png", png_of(2, 1, PNG_COLOR_TYPE_RGBA, 8, pixels));
+  add("2.png", png_of(2, 1, PNG_COLOR_TYPE_RGBA, 8, pixels));
+  EXPECT_EQ(read("s", 128.0).voxels, (std::vector<Vec3i>{{0, 0, 0}, {0, 0, 1}}));
+  add("2.png", png_of(2, 1, PNG_COLOR_TYPE_RGBA, 8, std::string("\0\0\0\376\0\0\0\0", 8)));
+  EXPECT_EQ(read("s", 128.0).voxels, (std::vector<Vec3i>{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}));
+}
+
+TEST_F(PngSlicesTest, MissingSlicesAreWarnedOf) {
+  const auto warning = [&](const std::vector<std::string>& names) {
+    new_folder();
+    for (const std::string& name : names) add(name, png_of(1, 1, PNG_COLOR_TYPE_GRAY, 8, "a"));
+    const auto warnings = open("s")->warnings();
+    return warnings.empty() ? "none" : warnings[0];
+  };
+  EXPECT_EQ(warning({"a.png"}), "none");
+  EXPECT_EQ(warning({"a.png", "b.png"}), "none");
+  EXPECT_EQ(warning({"s1.png", "s2.png", "s3.png"}), "none");
+  EXPECT_EQ(warning({"s10.png", "s15.png", "s20.png"}), "none");
+  EXPECT_EQ(warning({"2024-v1.png", "2024-v2.png"}), "none");
+  EXPECT_TRUE(has(warning({"s1.png", "s3.png"}), "1 slice is missing, the first between 's1.png'"));
+  EXPECT_TRUE(has(warning({"s1.png", "s2.png", "s4.png", "s8.png"}), "4 slices are missing"));
+}
+
 TEST_F(PngSlicesTest, NamesAreSortedByTheirNumbers) {
   const std::vector<std::string> sorted = {"",
                                            "1",

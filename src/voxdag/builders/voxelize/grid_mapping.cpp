@@ -129,7 +129,14 @@ Grid grid_from_bounds(const Box3d& bounds, double voxel_size) {
   require_voxel_size(voxel_size);
   const double side = bounds.is_empty() ? 0 : longest_side(bounds);
   if (!(side > 0) || !std::isfinite(side)) throw Error("the bounds must have a positive size");
-  return {levels_for(std::ceil(side / voxel_size)), bounds.lo, voxel_size, kSubvoxels / voxel_size};
+  // Decimal numbers are rounded: 204.8 - 0.1 voxels of 0.1 are 2047, not a little more.
+  const double voxels = side / voxel_size, whole = std::round(voxels);
+  double greatest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    greatest = std::max({greatest, std::abs(bounds.lo[axis]), std::abs(bounds.hi[axis])});
+  const bool is_whole = std::abs(voxels - whole) <= 4 * 0x1p-53 * (greatest / voxel_size + voxels);
+  return {levels_for(is_whole ? whole : std::ceil(voxels)), bounds.lo, voxel_size,
+          kSubvoxels / voxel_size};
 }
 
 std::optional<Vec3i> quantize(const Grid& grid, Vec3d world) {

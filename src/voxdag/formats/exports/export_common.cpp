@@ -97,6 +97,10 @@ void write_placement_file(const std::filesystem::path& path, const Grid& grid, c
                   {"origin", {grid.origin.x, grid.origin.y, grid.origin.z}},
                   {"voxel_size", grid.voxel_size}};
   json["window"] = {{"lo", {lo.x, lo.y, lo.z}}, {"hi", {hi.x, hi.y, hi.z}}};
+  if (layout.lo_in_file) {
+    const Vec3i& first = *layout.lo_in_file;
+    json["window"]["lo_in_file"] = {first.x, first.y, first.z};
+  }
   json["array"] = {{"content", layout.content}, {"dtype", layout.dtype}};
   if (!layout.axes.empty()) {
     json["array"]["axes_slowest_to_fastest"] = layout.axes;

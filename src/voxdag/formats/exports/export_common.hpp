@@ -52,6 +52,9 @@ struct ArrayLayout {
   std::string dtype;
   /// The axes of a dense array, from the slowest to the fastest; empty for others.
   std::string axes;
+  /// What the file calls voxel window.lo; without it (0, 0, 0) in a dense array, window.lo in
+  /// others.
+  std::optional<Vec3i> lo_in_file = {};
 };
 
 /// Writes PATH.json: the grid, the window, the layout, and how they place a voxel in the world.

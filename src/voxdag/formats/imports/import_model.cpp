@@ -13,10 +13,11 @@ ImportedModel import_model(const VoxelSource& source, const ImportOptions& optio
   metadata.build = {{"cover", "imported"}};
   if (result.attributes.view().has_colors()) {
     metadata.attributes.resolution = result.grid.resolution();
-    metadata.attributes.colors = {options.color_bound, result.attributes.color_errors.squared};
+    metadata.attributes.colors = {color_bound_of(source, options),
+                                  result.attributes.color_errors.squared};
   }
   return {DagModel(std::move(result.dag), std::move(result.attributes), std::move(metadata), work),
-          result.read, result.outside};
+          result.read, result.outside, result.not_finite};
 }
 
 }  // namespace voxdag

@@ -10,8 +10,9 @@ namespace voxdag {
 
 struct ImportedModel {
   DagModel model;
-  std::uint64_t read = 0;     ///< Points or voxels in the source.
-  std::uint64_t outside = 0;  ///< Points outside of the bounds, which are left out.
+  std::uint64_t read = 0;        ///< Points or voxels in the source.
+  std::uint64_t outside = 0;     ///< Points outside of the bounds, which are left out.
+  std::uint64_t not_finite = 0;  ///< Points that are not finite, which are left out.
 };
 
 /// Imports a source with import_voxels(). The metadata call it `name`. Throws Error, OverMemory and

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "voxdag/algebra/voxels/voxel_builder.hpp"
@@ -34,9 +35,7 @@ Extent extent_of(const VoxelSource& source, Work work) {
   source.visit_all([&](const VoxelBatch& batch) {
     work.poll();
     for (const Vec3d p : batch.places) {
-      for (int axis = 0; axis < 3; ++axis)
-        if (!std::isfinite(p[axis]))
-          throw Error("", "", "point " + std::to_string(extent.count) + " is not finite");
+      if (!is_finite(p)) continue;
       ++extent.count;
       extent.lo = min(extent.lo, p);
       extent.hi = max(extent.hi, p);
@@ -54,41 +53,48 @@ Grid grid_of_voxels(const VoxelSource& source, const ImportOptions& options, Wor
         std::max(kMinLevels, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(most))));
     if (grid.levels > kMaxLevels)
       throw Error("", "", "has voxels beyond 1048575, the last one of the largest grid");
-    grid.quantization_scale = kSubvoxels / grid.voxel_size;
   }
+  grid.voxel_size = options.voxel_size.value_or(grid.voxel_size);
+  grid.origin = options.origin.value_or(grid.origin * (options.voxel_size ? grid.voxel_size : 1));
+  grid.quantization_scale = kSubvoxels / grid.voxel_size;
   grid.levels = options.levels.value_or(grid.levels);
   return grid;
 }
 
 Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Work work) {
-  Box3d bounds;
-  if (options.bounds) {
-    bounds = *options.bounds;
-  } else {
-    const Extent extent = extent_of(source, work);
-    if (extent.count == 0) throw Error("", "", "has no points, so it has no bounds");
-    bounds = {extent.lo, extent.hi};
+  if (options.bounds)
+    return options.levels ? grid_from_bounds(*options.bounds, *options.levels)
+                          : grid_from_bounds(*options.bounds, *options.voxel_size);
+  if (const std::optional<Grid> grid = source.grid();
+      grid && !options.levels && !options.origin &&
+      options.voxel_size.value_or(grid->voxel_size) == grid->voxel_size)
+    return *grid;
+  const Extent extent = extent_of(source, work);
+  if (extent.count == 0) throw Error("", "", "has no points, so it has no bounds");
+  if (options.levels) {
+    Box3d bounds{extent.lo, extent.hi};
     // One point has a grid of voxels of size 1, as a mesh of one point has.
-    if (!(bounds.lo.x < bounds.hi.x) && !(bounds.lo.y < bounds.hi.y) &&
-        !(bounds.lo.z < bounds.hi.z))
-      bounds.hi = bounds.lo + Vec3d{1, 1, 1} * std::ldexp(1.0, options.levels.value_or(2));
+    if (bounds.lo == bounds.hi)
+      bounds.hi = bounds.lo + Vec3d{1, 1, 1} * std::ldexp(1.0, *options.levels);
+    return grid_from_bounds(bounds, *options.levels);
   }
-  return options.levels ? grid_from_bounds(bounds, *options.levels)
-                        : grid_from_bounds(bounds, *options.voxel_size);
-}
-
-/// Returns the voxel of a point; none if it lies outside of the grid.
-std::optional<Vec3i> voxel_of_point(Vec3d point, const Grid& grid, bool has_bounds) {
-  const double side = std::ldexp(1.0, grid.levels);
-  Vec3i voxel;
-  for (int axis = 0; axis < 3; ++axis) {
-    double at = std::floor((point[axis] - grid.origin[axis]) / grid.voxel_size);
-    // The upper sides of the bounding box, also after rounding.
-    if (!has_bounds) at = std::clamp(at, 0.0, side - 1);
-    if (!(at >= 0 && at < side)) return std::nullopt;
-    voxel[axis] = static_cast<std::int32_t>(at);
+  if (options.origin) {
+    const Vec3d side = extent.hi - *options.origin;
+    return grid_from_voxel_size(
+        Box3d{*options.origin,
+              *options.origin + Vec3d{1, 1, 1} * std::max({0.0, side.x, side.y, side.z})},
+        *options.voxel_size);
   }
-  return voxel;
+  // Each axis begins half a voxel below the least coordinate; the last voxel is that of the
+  // greatest one.
+  const double size = *options.voxel_size;
+  Grid grid = grid_from_voxel_size(Box3d{extent.lo, extent.lo}, size);
+  grid.origin = extent.lo - Vec3d{0.5, 0.5, 0.5} * size;
+  const PointLocator locator(grid, source.coordinate_error());
+  double last = 0;
+  for (int axis = 0; axis < 3; ++axis) last = std::max(last, locator.index(extent.hi[axis], axis));
+  grid.levels = grid_from_voxel_size(Box3d{{0, 0, 0}, Vec3d{1, 1, 1} * (last * size)}, size).levels;
+  return grid;
 }
 
 }  // namespace
@@ -99,16 +105,26 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
   result.grid =
       has_points ? grid_of_points(source, options, work) : grid_of_voxels(source, options, work);
   const int levels = result.grid.levels;
+  const PointLocator locator(result.grid, source.coordinate_error());
+  const auto voxel_of = [&](Vec3d place) -> std::optional<Vec3i> {
+    if (!has_points) {
+      constexpr double kMax = std::numeric_limits<std::int32_t>::max();
+      if (std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)}) > kMax)
+        throw Error("", "", "has a voxel at a coordinate beyond 2^31");
+      return static_cast<Vec3i>(place);
+    }
+    if (!options.bounds && !options.origin) return locator.voxel_in_box(place);
+    return locator.voxel(place);
+  };
   // Calls add(voxel, index) for all places in the grid.
   const auto each_voxel = [&](const VoxelBatch& batch, const auto& add) {
     work.poll();
     result.read += batch.places.size();
     for (std::size_t i = 0; i < batch.places.size(); ++i) {
       const Vec3d place = batch.places[i];
-      const std::optional<Vec3i> voxel =
-          has_points ? voxel_of_point(place, result.grid, options.bounds.has_value())
-                     : static_cast<Vec3i>(place);
-      if (voxel)
+      if (!is_finite(place))
+        ++result.not_finite;
+      else if (const std::optional<Vec3i> voxel = voxel_of(place))
         add(*voxel, i);
       else
         ++result.outside;
@@ -116,11 +132,12 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
   };
   if (options.colors && source.has_colors()) {
     ColoredVoxelBuilder builder(levels, voxels_in_memory(work.memory, sizeof(ColoredCode)),
-                                options.folder, work);
+                                options.folder, work,
+                                source.has_palette() ? ColorRule::kLast : ColorRule::kMean);
     source.visit_all([&](const VoxelBatch& batch) {
       each_voxel(batch, [&](Vec3i voxel, std::size_t i) { builder.add(voxel, batch.colors[i]); });
     });
-    auto [dag, attributes] = builder.finish(options.color_bound);
+    auto [dag, attributes] = builder.finish(color_bound_of(source, options));
     result.dag = std::move(dag);
     result.attributes = std::move(attributes);
   } else {

@@ -12,26 +12,38 @@ namespace voxdag {
 
 struct ImportOptions {
   std::optional<int> levels;         ///< log2 of the voxels per side.
-  std::optional<double> voxel_size;  ///< World units; for points.
+  std::optional<double> voxel_size;  ///< World units; for points, and for voxels without a place.
+  std::optional<Vec3d> origin;       ///< Lower corner of the grid, for the same.
   std::optional<Box3d> bounds;       ///< For points: what the grid holds.
   bool colors = true;                ///< Stores the colours of files that have some.
-  double color_bound = 0.05;         ///< AttributeOptions::color_bound
-  std::filesystem::path folder;      ///< Of files for sorting.
+  /// AttributeOptions::color_bound. Without it 0.05, or 0 for sources with a palette.
+  std::optional<double> color_bound;
+  std::filesystem::path folder;  ///< Of files for sorting.
 };
+
+/// Returns the color_bound of an import.
+inline double color_bound_of(const VoxelSource& source, const ImportOptions& options) {
+  return options.color_bound.value_or(source.has_palette() ? 0 : 0.05);
+}
 
 struct ImportResult {
   Svdag dag;
   DagAttributes attributes;  ///< Colours of all cells, if there are any.
   Grid grid;
-  std::uint64_t read = 0;     ///< Points or voxels in the file.
-  std::uint64_t outside = 0;  ///< Points outside of the bounds, which are left out.
+  std::uint64_t read = 0;        ///< Points or voxels in the file.
+  std::uint64_t outside = 0;     ///< Points outside of the bounds, which are left out.
+  std::uint64_t not_finite = 0;  ///< Points with a coordinate that is no number: left out, too.
 };
 
-/// Sets the voxel of each point, or each voxel. Points need exactly one of `levels` and
-/// `voxel_size`; without `bounds` the grid is that of their bounding box, as for a mesh, and points
-/// on its upper sides belong to the last voxels. Voxels need neither: without `levels` the grid is
-/// that of the file, or the smallest one with its corner at 0 that holds them. Reads the file once
-/// or twice; memory is bounded. Throws Error, OverMemory and Cancelled.
+/// Sets the voxel of each point (see PointLocator), or each voxel. Points need exactly one of
+/// `levels` and `voxel_size`. Without `bounds` and with `levels`, the grid is that of their
+/// bounding box, as for a mesh, and points on its upper sides belong to the last voxels. Without
+/// `bounds` and with `voxel_size`, the grid begins half a voxel below the least coordinates, so
+/// that points of a lattice lie in the middle of their voxels. Voxels need neither: without
+/// `levels` the grid is that of the file, or the smallest one with its corner at 0 that holds them.
+/// Reads the file once or twice; memory is bounded. Throws Error, OverMemory and Cancelled.
+/// Voxels of sources without a place lie in a grid of `voxel_size` (default 1) with its corner at
+/// `origin` (default 0).
 ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options, Work work = {});
 
 }  // namespace voxdag

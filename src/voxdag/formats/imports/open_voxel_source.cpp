@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/formats/imports/file_placement.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
 
@@ -19,12 +20,19 @@ struct SourceFormat {
   std::unique_ptr<VoxelSource> (*open)(const Path& path, const Options& options);
 };
 
+std::unique_ptr<VoxelSource> open_text(const Path& path, const Options&) {
+  return open_xyz_points(path);
+}
+
 constexpr SourceFormat kSourceFormats[] = {
     {".npy", true,
      [](const Path& path, const Options& options) { return open_npy(path, options.threshold); }},
-    {".xyz", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
-    {".txt", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
-    {".csv", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
+    {".xyz", false, open_text},
+    {".txt", false, open_text},
+    {".csv", false, open_text},
+    {".asc", false, open_text},
+    {".pts", false, open_text},
+    {".xyzrgb", false, open_text},
     {".ply", false, [](const Path& path, const Options&) { return open_ply_points(path); }},
     {".las", false, [](const Path& path, const Options&) { return open_las_points(path); }},
     {".pcd", false, [](const Path& path, const Options&) { return open_pcd_points(path); }},
@@ -42,9 +50,7 @@ constexpr SourceFormat kSourceFormats[] = {
     {".vox", false, [](const Path& path, const Options&) { return open_vox(path); }},
 };
 
-}  // namespace
-
-std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& options) {
+std::unique_ptr<VoxelSource> open_by_name(const Path& path, const Options& options) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return open_png_slices(path, options.threshold);
   std::string name = path.string(), endings;
@@ -60,6 +66,13 @@ std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& 
   }
   if (name.ends_with(".laz")) throw Error(path.string(), "", kCompressedLas);
   throw Error(path.string(), "", "is none of " + endings + ", or a folder of .png files");
+}
+
+}  // namespace
+
+std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& options) {
+  std::unique_ptr<VoxelSource> source = open_by_name(path, options);
+  return options.use_placement ? with_file_placement(path, std::move(source)) : std::move(source);
 }
 
 }  // namespace voxdag

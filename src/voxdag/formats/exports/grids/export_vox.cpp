@@ -157,10 +157,11 @@ std::vector<std::filesystem::path> export_vox(const std::filesystem::path& path,
   std::string place;
   for (int axis = 0; axis < 3; ++axis)
     place.append(axis == 0 ? "" : ", ").append(std::to_string(position[axis]));
-  const ArrayLayout layout{
+  ArrayLayout layout{
       is_cut ? "sections of 2000 voxels a side; the first voxel of each section lies at " + place
              : "a scene; voxel window.lo lies at " + place,
       "palette indices", ""};
+  if (!is_cut) layout.lo_in_file = position;
   if (is_cut)
     write_placement_file(path.string() + ".json", grid, window, layout);
   else

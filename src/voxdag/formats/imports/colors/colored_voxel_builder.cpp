@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "voxdag/algebra/voxels/morton_builder.hpp"
@@ -104,11 +105,13 @@ void CellColors::close(int level) {
 }  // namespace
 
 ColoredVoxelBuilder::ColoredVoxelBuilder(int levels, std::size_t most_colors,
-                                         const std::filesystem::path& folder, Work work)
-    : levels_(levels), memory_(work.memory), colors_(most_colors, folder, work) {}
+                                         const std::filesystem::path& folder, Work work,
+                                         ColorRule rule)
+    : levels_(levels), memory_(work.memory), rule_(rule), colors_(most_colors, folder, work) {}
 
 void ColoredVoxelBuilder::add(Vec3i voxel, Rgb8 color) {
-  colors_.add({code_in_grid(voxel, levels_),
+  if (rule_ == ColorRule::kLast && added_ != UINT32_MAX) ++added_;
+  colors_.add({code_in_grid(voxel, levels_), added_,
                color[0] | std::uint32_t{color[1]} << 8 | std::uint32_t{color[2]} << 16});
 }
 
@@ -127,11 +130,21 @@ ColoredVoxelBuilder::Result ColoredVoxelBuilder::finish(double color_bound) {
   ValueEncoder encoder(attributes.index.cells, make_value_metric(kColorWeights, 255 * color_bound),
                        memory_);
   CellColors cells(levels_, encoder);
-  colors_.visit_all([&](const ColoredCode& record) {
+  const auto add_color = [&](const ColoredCode& record) {
     cells.add(record.code, {static_cast<std::uint8_t>(record.color),
                             static_cast<std::uint8_t>(record.color >> 8),
                             static_cast<std::uint8_t>(record.color >> 16)});
-  });
+  };
+  if (rule_ == ColorRule::kMean) {
+    colors_.visit_all(add_color);
+  } else {
+    std::optional<ColoredCode> last;
+    colors_.visit_all([&](const ColoredCode& record) {
+      if (last && last->code != record.code) add_color(*last);
+      last = record;
+    });
+    if (last) add_color(*last);
+  }
   cells.finish();
   attributes.colors = encoder.finish();
   attributes.color_errors = encoder.errors();

@@ -10,10 +10,14 @@
 
 namespace voxdag {
 
+/// The colour of a voxel that has several.
+enum class ColorRule : std::uint8_t { kMean, kLast };
+
 /// A voxel and one of its colours.
 struct ColoredCode {
   std::uint64_t code = 0;
-  std::uint32_t color = 0;  ///< Red in the lowest byte, then green and blue.
+  std::uint32_t number = 0;  ///< For ColorRule::kLast: of the colours before it; at most 2^32 - 1.
+  std::uint32_t color = 0;   ///< Red in the lowest byte, then green and blue.
 
   friend auto operator<=>(const ColoredCode&, const ColoredCode&) = default;
 };
@@ -24,7 +28,7 @@ class ColoredVoxelBuilder {
   /// A grid of 2^levels voxels a side. Holds up to `most_colors` in memory, 16 bytes each; files
   /// lie in `folder`. Throws OverMemory.
   ColoredVoxelBuilder(int levels, std::size_t most_colors, const std::filesystem::path& folder,
-                      Work work);
+                      Work work, ColorRule rule = ColorRule::kMean);
 
   /// Adds a colour of a voxel. Throws Error if it lies outside of the grid, or if a file cannot be
   /// written; OverMemory and Cancelled.
@@ -42,6 +46,8 @@ class ColoredVoxelBuilder {
  private:
   int levels_;
   MemoryBudget* memory_;
+  ColorRule rule_;
+  std::uint32_t added_ = 0;
   SortedRecords<ColoredCode, Repeats::kKept> colors_;
 };
 

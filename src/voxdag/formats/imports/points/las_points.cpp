@@ -33,10 +33,9 @@ constexpr std::size_t kMajorVersion = 24, kMinorVersion = 25, kHeaderBytes = 94,
                       kFormat = 104, kRecordLength = 105, kLegacyPoints = 107, kScale = 131,
                       kOffset = 155, kPoints = 247;
 
-std::uint64_t least_header_bytes(int minor_version) {
-  if (minor_version == 4) return 375;
-  return minor_version == 3 ? 235 : 227;
-}
+/// The fields up to the bounds; what versions 1.3 to 1.5 add behind them is needed for the count of
+/// 64 bits only. Some writers of 1.3 leave their addition out.
+constexpr std::uint64_t kMinHeaderBytes = 227, kLongHeaderBytes = 375;
 
 class HeaderParser {
  public:
@@ -71,11 +70,12 @@ class HeaderParser {
 
   void check_versions() {
     const int major = load<std::uint8_t>(kMajorVersion), minor = load<std::uint8_t>(kMinorVersion);
-    if (major != 1 || minor > 4)
+    if (major != 1 || minor > 5)
       fail(kMajorVersion, "LAS version " + std::to_string(major) + "." + std::to_string(minor) +
-                              " is not 1.0 to 1.4");
+                              " is not 1.0 to 1.5");
     header_.minor_version = minor;
-    const std::uint64_t least = least_header_bytes(minor), size = load<std::uint16_t>(kHeaderBytes);
+    const std::uint64_t least = minor >= 4 ? kLongHeaderBytes : kMinHeaderBytes,
+                        size = load<std::uint16_t>(kHeaderBytes);
     if (size < least)
       fail(kHeaderBytes, "a header of " + std::to_string(size) +
                              " bytes is too short for version 1." + std::to_string(minor) + ": " +
@@ -88,13 +88,16 @@ class HeaderParser {
 
   void read_count() {
     const std::uint64_t legacy = load<std::uint32_t>(kLegacyPoints);
-    const bool is_long = header_.minor_version == 4;
-    const std::uint64_t points = is_long ? load<std::uint64_t>(kPoints) : legacy;
-    header_.points = legacy != 0 ? legacy : points;
-    header_.has_two_counts = legacy != 0 && points != 0 && points != legacy;
+    const bool is_long = header_.minor_version >= 4;
+    const std::uint64_t points = is_long ? load<std::uint64_t>(kPoints) : 0;
+    // Formats 6 to 10 have the long count only. Some writers put the largest number, or what fits,
+    // into the legacy one.
+    const bool uses_legacy = header_.format < 6 ? legacy != 0 : points == 0;
+    header_.points = uses_legacy ? legacy : points;
+    header_.has_two_counts = header_.format < 6 && legacy != 0 && points != 0 && points != legacy;
     const std::uint64_t room = (bytes_.size() - header_.data) / header_.record_bytes;
     if (header_.points > room)
-      fail(legacy != 0 ? kLegacyPoints : kPoints, "the file ends after " + std::to_string(room) +
+      fail(uses_legacy ? kLegacyPoints : kPoints, "the file ends after " + std::to_string(room) +
                                                       " of " + std::to_string(header_.points) +
                                                       " points");
   }
@@ -142,9 +145,16 @@ class LasPoints : public VoxelSource {
 
   bool has_points() const override { return true; }
   bool has_colors() const override { return color_ > 0; }
+  /// The products and sums of add() are rounded.
+  CoordinateError coordinate_error() const override {
+    CoordinateError error{0x1p-51, {}};
+    for (int axis = 0; axis < 3; ++axis)
+      error.absolute[axis] = 0x1p-52 * std::abs(header_.offset[axis]);
+    return error;
+  }
   std::vector<std::string> warnings() const override {
     if (!header_.has_two_counts) return {};
-    return {name_ + ": the header has two counts of points; the legacy one, " +
+    return {"the header has two counts of points; the legacy one, " +
             std::to_string(header_.points) + ", is used"};
   }
   void visit_all(const VisitBatch& visit) const override {

@@ -51,7 +51,7 @@ class PcdHeaderParser {
       parse_fields(text);
     else if (keyword == "SIZE")
       for_each_field(text, keyword, [&](PcdField& field, std::string_view token) {
-        field.size = static_cast<std::uint64_t>(parse_count(token, keyword, 8));
+        field.size = static_cast<std::uint64_t>(parse_count(token, keyword, 1, 8));
       });
     else if (keyword == "TYPE")
       for_each_field(text, keyword, [&](PcdField& field, std::string_view token) {
@@ -61,7 +61,8 @@ class PcdHeaderParser {
       });
     else if (keyword == "COUNT")
       for_each_field(text, keyword, [&](PcdField& field, std::string_view token) {
-        field.count = static_cast<std::uint64_t>(parse_count(token, keyword, kMaxValues));
+        // Drivers of scanners write padding as fields without values.
+        field.count = static_cast<std::uint64_t>(parse_count(token, keyword, 0, kMaxValues));
       });
     else if (keyword == "WIDTH")
       width_ = parse_number(next_token(text), keyword);
@@ -112,12 +113,12 @@ class PcdHeaderParser {
     return static_cast<std::uint64_t>(number);
   }
 
-  std::int64_t parse_count(std::string_view token, std::string_view keyword,
+  std::int64_t parse_count(std::string_view token, std::string_view keyword, std::int64_t least,
                            std::int64_t most) const {
     std::int64_t number = 0;
-    if (!parse_int(token, number) || number < 1 || number > most)
-      fail(std::string(keyword) + " " + in_quotes(token) + " is not a whole number from 1 to " +
-           std::to_string(most));
+    if (!parse_int(token, number) || number < least || number > most)
+      fail(std::string(keyword) + " " + in_quotes(token) + " is not a whole number from " +
+           std::to_string(least) + " to " + std::to_string(most));
     return number;
   }
 
@@ -155,6 +156,7 @@ class PcdHeaderParser {
       header_.point_bytes += field.size * field.count;
       header_.point_values += field.count;
     }
+    if (header_.point_values == 0) fail("the points have no values");
   }
 
   /// Refuses a count that is too large for the rest of the file.

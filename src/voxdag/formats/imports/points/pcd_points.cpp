@@ -68,7 +68,8 @@ class PcdPoints : public VoxelSource {
       if (found < 0) throw fail_in_header("has no field '" + std::string(axis) + "'");
       used_.push_back(header_.fields[found]);
       if (used_.back().count != 1)
-        throw fail_in_header("field '" + std::string(axis) + "' has more than one value");
+        throw fail_in_header("field '" + std::string(axis) + "' has " +
+                             std::to_string(used_.back().count) + " values instead of one");
     }
     for (const char* const name : {"rgb", "rgba"}) {
       const int found = header_.find(name);
@@ -81,6 +82,12 @@ class PcdPoints : public VoxelSource {
 
   bool has_points() const override { return true; }
   bool has_colors() const override { return used_.size() > 3; }
+  CoordinateError coordinate_error() const override {
+    const bool has_floats = std::any_of(used_.begin(), used_.begin() + 3, [](const PcdField& f) {
+      return f.type == 'F' && f.size == 4;
+    });
+    return has_floats ? kFloatCoordinates : CoordinateError{};
+  }
   void visit_all(const VisitBatch& visit) const override {
     BatchedVoxels points(visit);
     const bool is_text = header_.data == PcdData::kAscii;
@@ -101,7 +108,6 @@ class PcdPoints : public VoxelSource {
   Error fail_in_header(const std::string& reason) const { return {source_.name, "header", reason}; }
 
   void add(BatchedVoxels& points, const PcdPoint& point) const {
-    if (!is_finite(point.place)) return;
     if (!has_colors()) return points.add(point.place);
     const std::uint32_t color = point.color;
     points.add(point.place,
@@ -182,6 +188,18 @@ class PcdPoints : public VoxelSource {
                                                     " compressed bytes cannot hold " +
                                                     std::to_string(unpacked) + " bytes");
     compressed_ = body.substr(kSizes, packed);
+    is_stored_ = packed == unpacked && !is_lzf(unpacked);
+  }
+
+  /// Returns whether the data are `bytes` compressed bytes. A writer whose data did not shrink may
+  /// have stored them as they were.
+  bool is_lzf(std::uint64_t bytes) const {
+    try {
+      LzfStream(compressed_).skip(bytes);
+      return true;
+    } catch (const Fault&) {
+      return false;
+    }
   }
 
   /// Decompresses as often as there are fields to read, so that no field is held in memory.
@@ -190,13 +208,21 @@ class PcdPoints : public VoxelSource {
     std::vector<LzfStream> streams;
     std::vector<std::vector<char>> columns;
     for (const PcdField& field : used_) {
-      streams.emplace_back(compressed_).skip(field.offset * header_.points);
+      streams.emplace_back(compressed_);
+      if (!is_stored_) streams.back().skip(field.offset * header_.points);
       columns.emplace_back(kBlock * field.size);
     }
     for (std::uint64_t first = 0; first < header_.points; first += kBlock) {
       const std::size_t count = std::min<std::uint64_t>(kBlock, header_.points - first);
-      for (std::size_t used = 0; used < used_.size(); ++used)
-        streams[used].read(columns[used].data(), count * used_[used].size);
+      for (std::size_t used = 0; used < used_.size(); ++used) {
+        const PcdField& field = used_[used];
+        char* const column = columns[used].data();
+        if (is_stored_)
+          compressed_.copy(column, count * field.size,
+                           field.offset * header_.points + first * field.size);
+        else
+          streams[used].read(column, count * field.size);
+      }
       for (std::size_t i = 0; i < count; ++i) {
         PcdPoint point;
         for (std::size_t used = 0; used < used_.size(); ++used)
@@ -211,6 +237,7 @@ class PcdPoints : public VoxelSource {
   PcdHeader header_;
   std::vector<PcdField> used_;   ///< x, y, z and perhaps the colour.
   std::string_view compressed_;  ///< None if no point is compressed.
+  bool is_stored_ = false;       ///< The compressed data are not.
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "voxdag/formats/imports/batched_voxels.hpp"
@@ -19,6 +20,9 @@ std::uint8_t to_8_bits(double component) {
   return static_cast<std::uint8_t>(component > 0 ? std::min(component, 1.0) * 255 + 0.5 : 0);
 }
 
+/// The factor of the first spherical harmonic: Gaussian splats have the colour 0.5 + it * f_dc.
+constexpr double kHarmonic = 0.28209479177387814;
+
 class PlyPoints : public VoxelSource {
  public:
   explicit PlyPoints(const std::filesystem::path& path)
@@ -27,43 +31,102 @@ class PlyPoints : public VoxelSource {
         header_(parse_ply_header(source_, PlyUse::kPoints)) {
     for (const std::string_view axis : {"x", "y", "z"}) columns_.push_back(vertex().find({axis}));
     std::vector<int> color = find_ply_color(vertex());
+    const bool is_splat = color.empty();
+    if (is_splat) color = find_ply_scalars(vertex(), {"f_dc_0", "f_dc_1", "f_dc_2"});
     if (color.empty()) return;
-    color.resize(3);
-    for (std::size_t c = 0; c < 3; ++c) {
-      columns_.push_back(color[c]);
-      color_scales_[c] = ply_color_scale(vertex().properties[color[c]].type);
-    }
+    columns_.insert(columns_.end(), color.begin(), color.begin() + 3);
+    for (std::size_t c = 0; c < 3; ++c)
+      color_scales_[c] = is_splat ? kHarmonic : ply_color_scale(type_of(columns_[3 + c]));
+    color_offset_ = is_splat ? 0.5 : 0;
+    if (!is_splat && std::any_of(color.begin(), color.begin() + 3,
+                                 [&](int p) { return !is_integer(type_of(p)); }))
+      find_color_range();
   }
 
   bool has_points() const override { return true; }
+  std::optional<Grid> grid() const override { return grid_of_comments(); }
   bool has_colors() const override { return columns_.size() > 3; }
+  CoordinateError coordinate_error() const override {
+    const bool has_floats = std::any_of(columns_.begin(), columns_.begin() + 3, [&](int property) {
+      return type_of(property) == PlyType::kFloat;
+    });
+    return has_floats ? kFloatCoordinates : CoordinateError{};
+  }
   void visit_all(const VisitBatch& visit) const override {
     BatchedVoxels points(visit);
-    const bool is_text = header_.format == PlyFormat::kAscii;
-    try {
-      if (is_text)
-        visit_text(points);
-      else
-        visit_binary(points);
-    } catch (const Fault& fault) {
-      throw_fault(source_, fault, is_text ? header_.line_end : kNoLines);
-    }
+    for_each_vertex([&](const Values& values) { add(points, values); });
     points.finish();
   }
 
  private:
   const PlyElement& vertex() const { return header_.elements[header_.vertex]; }
 
-  void add(BatchedVoxels& points, const Values& values, const char* row) const {
+  /// Returns the grid of voxdag's own exports: its comments name it.
+  std::optional<Grid> grid_of_comments() const {
+    std::string_view header = source_.bytes.substr(0, header_.body);
+    if (header.find("comment made by voxdag") == header.npos) return std::nullopt;
+    Vec3d origin;
+    double voxel_size = 0, resolution = 0;
+    int found = 0;
+    while (!header.empty()) {
+      std::string_view line = next_line(header, header_.line_end);
+      if (next_token(line) != "comment") continue;
+      const std::string_view name = next_token(line);
+      const auto number = [&](double& value) { found += parse_float(next_token(line), value); };
+      if (name == "grid_origin")
+        for (int axis = 0; axis < 3; ++axis) number(origin[axis]);
+      if (name == "voxel_size") number(voxel_size);
+      if (name == "resolution") number(resolution);
+    }
+    int levels = kMinLevels;
+    while (levels < kMaxLevels && std::ldexp(1.0, levels) < resolution) ++levels;
+    const bool has_faces = std::any_of(header_.elements.begin(), header_.elements.end(),
+                                       [](const PlyElement& e) { return e.name == "face"; });
+    if (found != 5 || has_faces || std::ldexp(1.0, levels) != resolution || !(voxel_size > 0) ||
+        !is_finite(origin) || !std::isfinite(kSubvoxels / voxel_size))
+      return std::nullopt;
+    return Grid{levels, origin, voxel_size, kSubvoxels / voxel_size};
+  }
+
+  PlyType type_of(int property) const {
+    return vertex().properties[static_cast<std::size_t>(property)].type;
+  }
+
+  /// Colours of real numbers go to 1, or to 255 as those of bytes do: then some are 2 or more.
+  void find_color_range() {
+    double greatest = 0;
+    for_each_vertex([&](const Values& values) {
+      for (std::size_t c = 3; c < 6; ++c)
+        if (std::isfinite(values[c])) greatest = std::max(greatest, values[c]);
+    });
+    if (greatest >= 2) color_scales_.fill(1.0 / 255);
+  }
+
+  void add(BatchedVoxels& points, const Values& values) const {
     const Vec3d point{values[0], values[1], values[2]};
-    if (!is_finite(point)) throw Fault{row, "the point is not finite"};
     if (!has_colors()) return points.add(point);
     Rgb8 color;
-    for (std::size_t c = 0; c < 3; ++c) color[c] = to_8_bits(values[3 + c] * color_scales_[c]);
+    for (std::size_t c = 0; c < 3; ++c)
+      color[c] = to_8_bits(values[3 + c] * color_scales_[c] + color_offset_);
     points.add(point, color);
   }
 
-  void visit_binary(BatchedVoxels& points) const {
+  /// Calls use(values) for all vertices.
+  template <class Use>
+  void for_each_vertex(const Use& use) const {
+    const bool is_text = header_.format == PlyFormat::kAscii;
+    try {
+      if (is_text)
+        visit_text(use);
+      else
+        visit_binary(use);
+    } catch (const Fault& fault) {
+      throw_fault(source_, fault, is_text ? header_.line_end : kNoLines);
+    }
+  }
+
+  template <class Use>
+  void visit_binary(const Use& use) const {
     const bool swap = header_.swaps_bytes();
     const char* p = source_.bytes.data() + header_.body;
     const char* const end = source_.bytes.data() + source_.bytes.size();
@@ -71,7 +134,7 @@ class PlyPoints : public VoxelSource {
     for (const PlyElement& element : header_.elements) {
       if (element.properties.empty()) continue;
       const RowLayout layout(element);
-      if (&element == &vertex()) return visit_vertices(layout, p, end, swap, pages, points);
+      if (&element == &vertex()) return visit_vertices(layout, p, end, swap, pages, use);
       for (std::uint64_t row = 0; row < element.count; ++row) {
         p = layout.walk(p, end, swap, [](std::size_t, const char*, std::size_t) {});
         pages.pass(p);
@@ -79,11 +142,11 @@ class PlyPoints : public VoxelSource {
     }
   }
 
+  template <class Use>
   void visit_vertices(const RowLayout& layout, const char* p, const char* end, bool swap,
-                      PassedPages& pages, BatchedVoxels& points) const {
+                      PassedPages& pages, const Use& use) const {
     for (std::uint64_t row = 0; row < vertex().count; ++row) {
       Values values{};
-      const char* const start = p;
       p = layout.walk(p, end, swap, [&](std::size_t run, const char* fixed, std::size_t) {
         for (std::size_t c = 0; c < columns_.size(); ++c) {
           const auto property = static_cast<std::size_t>(columns_[c]);
@@ -92,12 +155,13 @@ class PlyPoints : public VoxelSource {
             values[c] = load_double(vertex().properties[property].type, fixed + place.offset, swap);
         }
       });
-      add(points, values, start);
+      use(values);
       pages.pass(p);
     }
   }
 
-  void visit_text(BatchedVoxels& points) const {
+  template <class Use>
+  void visit_text(const Use& use) const {
     std::string_view text = source_.bytes.substr(header_.body);
     PassedPages pages(file_, text.data());
     for (const PlyElement& element : header_.elements) {
@@ -110,15 +174,14 @@ class PlyPoints : public VoxelSource {
         const std::string_view line = next_line(text, header_.line_end);
         pages.pass(text.data());
         if (trim(line).empty()) continue;
-        if (&element == &vertex()) parse_vertex(line, points);
+        if (&element == &vertex()) use(parse_vertex(line));
         ++row;
       }
       if (&element == &vertex()) return;
     }
   }
 
-  void parse_vertex(std::string_view row, BatchedVoxels& points) const {
-    const char* const start = row.data();
+  Values parse_vertex(std::string_view row) const {
     CancelPoll poll({});
     Values values{};
     for (std::size_t p = 0; p < vertex().properties.size(); ++p)
@@ -128,7 +191,7 @@ class PlyPoints : public VoxelSource {
             throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
       });
     check_ply_row_end(row);
-    add(points, values, start);
+    return values;
   }
 
   MappedFile file_;
@@ -136,6 +199,7 @@ class PlyPoints : public VoxelSource {
   PlyHeader header_;
   std::vector<int> columns_;  ///< The properties of the values.
   std::array<double, 3> color_scales_{};
+  double color_offset_ = 0;
 };
 
 }  // namespace

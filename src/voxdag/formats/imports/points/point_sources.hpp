@@ -1,5 +1,6 @@
 #pragma once
 /// Opens files of points.
+#include "voxdag/file/npy.hpp"
 #include "voxdag/formats/imports/voxel_source.hpp"
 
 namespace voxdag {
@@ -8,25 +9,36 @@ namespace voxdag {
 inline constexpr const char* kCompressedLas =
     "is a compressed LAS file (LAZ), which is not read: decompress it with laszip or PDAL";
 
-/// Opens an array of NumPy: N × 3 int32 are voxels, N × 3 float32 or float64 are points.
-std::unique_ptr<VoxelSource> open_npy_points(const std::filesystem::path& path);
+/// Opens an array of N x 3 numbers of any type and order, or a structured array whose rows have the
+/// fields x, y and z, or one of three items called voxel, position or xyz. Integers are voxels,
+/// real numbers are points. The fields red, green and blue, or color, are colours.
+std::unique_ptr<VoxelSource> open_npy_points(const std::filesystem::path& path,
+                                             const NpyStart& start);
 
-/// Opens a text of points: three numbers in each line, and perhaps more that are ignored. Blanks,
-/// tabs, commas or semicolons separate them; # begins a comment. At most 1 MiB per line.
+/// Opens a text of points: three numbers in each line, and perhaps more. Blanks, tabs, commas,
+/// semicolons or quotes separate them; # and // begin comments. At most 1 MiB per line.
+///
+/// A comment or a line before the points may name the columns: x, y, z, r, g, b, or red, green,
+/// blue. Without names, the columns behind the coordinates are a colour if the first 4,096 points
+/// have whole numbers from 0 to 255 there, not only 0 and 1; behind one column more if not, as in
+/// .pts files. A line with one whole number counts points.
+///
+/// Throws Error with the line: numbers that are none, commas inside numbers, colours beyond the
+/// range of the first points, and texts in UTF-16.
 std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path);
 
 /// Opens the vertices of a PLY file as points, in ascii and in both binary orders; ignores faces
 /// and other elements. Numbers of text are float64, whatever their type is called. The colours are
 /// the properties that the mesh reader knows, with its scales: red, green and blue, or
 /// diffuse_red ..., or r ...; integers up to the greatest value of 8 or 16 bits, or floats from 0
-/// to 1, clamped.
+/// to 1, or to 255 if some are 2 or more; clamped. Gaussian splats have the colour of f_dc_0 to
+/// f_dc_2.
 ///
 /// Throws Error with the line (in a binary body with the byte): malformed headers and values,
-/// counts that need a longer file, truncation before the end of the vertices, points that are not
-/// finite.
+/// counts that need a longer file, truncation before the end of the vertices.
 std::unique_ptr<VoxelSource> open_ply_points(const std::filesystem::path& path);
 
-/// Opens the points of a LAS file, versions 1.0 to 1.4, point formats 0 to 10. Skips points that
+/// Opens the points of a LAS file, versions 1.0 to 1.5, point formats 0 to 10. Skips points that
 /// are flagged as withheld, which the specification calls deleted; reads synthetic points and all
 /// others. Skips variable length records, and reads coordinates as they are, without a reference
 /// system.
@@ -38,9 +50,8 @@ std::unique_ptr<VoxelSource> open_ply_points(const std::filesystem::path& path);
 std::unique_ptr<VoxelSource> open_las_points(const std::filesystem::path& path);
 
 /// Opens the points of a PCD file, versions 0.5 to 0.7, with DATA ascii, binary or
-/// binary_compressed. x, y and z may have any type; numbers of text are float64. Points whose
-/// coordinates are not finite are the holes of an organised cloud: they are left out silently. The
-/// viewpoint is ignored.
+/// binary_compressed. x, y and z may have any type; numbers of text are float64. Compressed
+/// data that did not shrink may be stored. The viewpoint is ignored.
 ///
 /// The colours are field `rgb` or `rgba` of 4 bytes: 0xAARRGGBB, also as the bits of a float. In
 /// text, a number with only digits is that integer; any other number is such a float, and NaN is

@@ -1,5 +1,8 @@
-#include <charconv>
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -7,65 +10,285 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
+#include "voxdag/formats/readers/text_scan.hpp"
 
 namespace voxdag {
 namespace {
 
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
+/// Points that decide whether the columns behind the coordinates are colours.
+constexpr std::size_t kSampledPoints = 4096;
+constexpr std::size_t kCoordinates = 3, kValues = 6;  ///< Coordinates, then a colour.
 
-bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; }
+bool is_separator(char c) {
+  return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r' || c == '"';
+}
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Removes the next field from a line; empty at its end.
+std::string_view next_field(std::string_view& line) {
+  std::size_t first = 0;
+  while (first < line.size() && is_separator(line[first])) ++first;
+  std::size_t last = first;
+  while (last < line.size() && !is_separator(line[last])) ++last;
+  const std::string_view field = line.substr(first, last - first);
+  line.remove_prefix(last);
+  return field;
+}
+
+std::vector<std::string_view> fields_of(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const std::string_view field = next_field(line);
+    if (field.empty()) return fields;
+    fields.push_back(field);
+  }
+}
+
+/// Returns whether a line has commas inside numbers, and another character between them.
+bool has_decimal_commas(std::string_view line) {
+  const std::string_view body = trim(line);
+  if (body.find_first_of(" \t;") == body.npos) return false;
+  for (std::size_t at = body.find(','); at != body.npos; at = body.find(',', at + 1))
+    if (at > 0 && at + 1 < body.size() && is_digit(body[at - 1]) && is_digit(body[at + 1]))
+      return true;
+  return false;
+}
+
+/// Returns which value the name of a column stands for; kValues for another one.
+std::size_t value_of_name(std::string_view name) {
+  std::string lower(name);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::string_view kNames[][kValues] = {
+      {"x", "y", "z", "r", "g", "b"},
+      {"points:0", "points:1", "points:2", "red", "green", "blue"},
+      {"points_0", "points_1", "points_2", "rgb:0", "rgb:1", "rgb:2"}};
+  for (const auto& names : kNames)
+    for (std::size_t value = 0; value < kValues; ++value)
+      if (lower == names[value]) return value;
+  return kValues;
+}
 
 class XyzPoints : public VoxelSource {
  public:
-  explicit XyzPoints(std::filesystem::path path) : path_(std::move(path)) {}
+  explicit XyzPoints(const std::filesystem::path& path)
+      : name_(path.string()), file_(path, MappedFile::Access::kSequential) {
+    if (file_.text().starts_with("\xFF\xFE") || file_.text().starts_with("\xFE\xFF"))
+      throw Error(name_, "", "is a text in UTF-16: save it in UTF-8");
+    find_header();
+    if (!has_names_) find_colors();
+    if (has_colors()) find_color_range();
+  }
 
   bool has_points() const override { return true; }
+  bool has_colors() const override { return columns_.size() > kCoordinates; }
+  std::vector<std::string> warnings() const override { return warnings_; }
   void visit_all(const VisitBatch& visit) const override {
-    const MappedFile mapping(path_, MappedFile::Access::kSequential);
-    const std::string_view text(reinterpret_cast<const char*>(mapping.bytes().data()),
-                                mapping.bytes().size());
     BatchedVoxels points(visit);
-    std::uint64_t number = 0;
-    for (std::size_t at = 0; at < text.size();) {
-      const std::size_t end = std::min(text.find('\n', at), text.size());
-      ++number;
-      if (end - at > kMaxLineBytes) fail(number, "is longer than 1 MiB");
-      std::string_view line = text.substr(at, end - at);
-      line = line.substr(0, line.find('#'));
-      Vec3d point;
-      if (read_point(line, number, point)) points.add(point);
-      at = end + 1;
-    }
+    PassedPages pages(file_, file_.text().data());
+    std::uint64_t announced = 0, count = 0;
+    for_each_line([&](std::string_view line, std::uint64_t number) {
+      if (const auto more = count_of(line)) {
+        announced += *more;
+        return true;
+      }
+      ++count;
+      add(points, line, number);
+      pages.pass(line.data());
+      return true;
+    });
     points.finish();
+    if (announced != count && announced > 0)
+      throw Error(name_, "",
+                  "has " + std::to_string(count) + " points, but lines with one number announce " +
+                      std::to_string(announced));
   }
 
  private:
   [[noreturn]] void fail(std::uint64_t line, const std::string& reason) const {
-    throw Error(path_.string(), "line " + std::to_string(line), reason);
+    throw Error(name_, "line " + std::to_string(line), reason);
   }
 
-  /// Returns false for a line without numbers.
-  bool read_point(std::string_view line, std::uint64_t number, Vec3d& point) const {
-    const char* at = line.data();
-    const char* const end = at + line.size();
-    for (int axis = 0; axis < 3; ++axis) {
-      while (at != end && is_separator(*at)) ++at;
-      if (at == end) {
-        if (axis == 0) return false;
-        fail(number, "has " + std::to_string(axis) + " numbers instead of three");
-      }
-      if (*at == '+') ++at;
-      const auto [next, error] = std::from_chars(at, end, point[axis]);
-      if (error != std::errc() || (next != end && !is_separator(*next)) ||
-          !std::isfinite(point[axis]))
-        fail(number, "number " + std::to_string(axis + 1) + " is not a finite number");
-      at = next;
+  /// Calls use(line, number) for the lines with fields, without comments, until it returns false.
+  /// Leaves out the header.
+  template <class Use>
+  void for_each_line(const Use& use) const {
+    std::string_view text = without_byte_order_mark(file_.text());
+    const char line_end = line_end_of(text);
+    for (std::uint64_t number = 1; !text.empty(); ++number) {
+      std::string_view line = next_line(text, line_end);
+      if (line.size() > kMaxLineBytes) fail(number, "is longer than 1 MiB");
+      line = line.substr(0, std::min(line.find('#'), line.find("//")));
+      if (number == header_line_ || trim(line).empty()) continue;
+      if (!use(line, number)) return;
     }
-    return true;
   }
 
-  std::filesystem::path path_;
+  /// Finds the names of the columns: in the last comment before the first points, or in a line
+  /// that does not begin with a number.
+  void find_header() {
+    std::string_view text = without_byte_order_mark(file_.text());
+    const char line_end = line_end_of(text);
+    std::string_view names;
+    for (std::uint64_t number = 1; !text.empty(); ++number) {
+      std::string_view line = trim(next_line(text, line_end));
+      const bool is_comment = line.starts_with('#') || line.starts_with("//");
+      while (!line.empty() && (line[0] == '#' || line[0] == '/')) line.remove_prefix(1);
+      const std::vector<std::string_view> fields = fields_of(line.substr(0, kMaxLineBytes));
+      double ignored = 0;
+      if (is_comment) {
+        if (has_coordinate_names(fields)) names = line;
+        continue;
+      }
+      if (fields.empty() || count_of(line)) continue;
+      if (parse_float(fields[0], ignored)) break;
+      if (fields.size() < kCoordinates || header_line_ > 0 ||
+          std::any_of(fields.begin(), fields.end(),
+                      [&](std::string_view field) { return parse_float(field, ignored); }))
+        fail(number, "number 1, " + in_quotes(fields[0]) + ", is not a number");
+      header_line_ = number;
+      names = line;
+    }
+    use_names(fields_of(names));
+  }
+
+  static bool has_coordinate_names(const std::vector<std::string_view>& fields) {
+    std::array<bool, kValues + 1> found{};
+    for (const std::string_view field : fields) found[value_of_name(field)] = true;
+    return found[0] && found[1] && found[2];
+  }
+
+  void use_names(const std::vector<std::string_view>& names) {
+    if (names.empty()) return;
+    if (!has_coordinate_names(names)) {
+      warnings_.push_back("its columns " + in_quotes(names[0]) + ", " + in_quotes(names[1]) +
+                          " and " + in_quotes(names[2]) + " are taken for x, y and z");
+      return;
+    }
+    std::array<std::optional<std::size_t>, kValues + 1> columns;
+    for (std::size_t column = names.size(); column-- > 0;)
+      columns[value_of_name(names[column])] = column;
+    const bool has_colors = columns[3] && columns[4] && columns[5];
+    columns_.clear();
+    for (std::size_t value = 0; value < (has_colors ? kValues : kCoordinates); ++value)
+      columns_.push_back(*columns[value]);
+    has_names_ = true;
+  }
+
+  /// Finds colours without names: three columns of whole numbers to 255 behind the coordinates, or
+  /// behind a column more, the intensity of .pts files.
+  void find_colors() {
+    std::size_t points = 0, fewest = SIZE_MAX;
+    std::array<bool, 7> is_byte;
+    is_byte.fill(true);
+    std::array<double, 7> greatest{};
+    for_each_line([&](std::string_view line, std::uint64_t) {
+      if (count_of(line)) return true;
+      const std::vector<std::string_view> fields = fields_of(line);
+      fewest = std::min(fewest, fields.size());
+      for (std::size_t i = kCoordinates; i < std::min<std::size_t>(7, fields.size()); ++i) {
+        double value = 0;
+        is_byte[i] &= std::all_of(fields[i].begin(), fields[i].end(), is_digit) &&
+                      parse_float(fields[i], value) && value <= 255;
+        greatest[i] = std::max(greatest[i], value);
+      }
+      return ++points < kSampledPoints;
+    });
+    if (points == 0 || fewest <= kCoordinates) return;
+    for (const std::size_t first : {std::size_t{3}, std::size_t{4}}) {
+      const bool are_bytes = is_byte[first] && is_byte[first + 1] && is_byte[first + 2];
+      // Normals along an axis are whole numbers, too.
+      const bool are_colors =
+          are_bytes && std::max({greatest[first], greatest[first + 1], greatest[first + 2]}) > 1;
+      if (fewest < first + 3 || !are_colors) continue;
+      for (std::size_t c = 0; c < 3; ++c) columns_.push_back(first + c);
+      return;
+    }
+    if (fewest >= kValues)
+      warnings_.emplace_back(
+          "its columns behind the third are left out: they have no names, and are no colours of "
+          "whole "
+          "numbers from 0 to 255");
+  }
+
+  /// Colours go to 1, 255 or 65535: the least of these that the first points do not exceed.
+  void find_color_range() {
+    std::size_t points = 0;
+    double greatest = 0;
+    bool has_fractions = false;
+    for_each_line([&](std::string_view line, std::uint64_t number) {
+      if (count_of(line)) return true;
+      const std::array<double, kValues> values = values_of(line, number);
+      for (std::size_t c = kCoordinates; c < kValues; ++c) {
+        greatest = std::max(greatest, values[c]);
+        has_fractions |= values[c] != std::floor(values[c]);
+      }
+      return ++points < kSampledPoints;
+    });
+    color_range_ = greatest > 255 ? 65535 : greatest > 1 || !has_fractions ? 255 : 1;
+  }
+
+  /// Returns the number of a line that has nothing else: .pts files count their points.
+  static std::optional<std::uint64_t> count_of(std::string_view line) {
+    const std::string_view body = trim(line);
+    std::int64_t count = 0;
+    if (!parse_int(body, count) || count < 0) return std::nullopt;
+    return static_cast<std::uint64_t>(count);
+  }
+
+  std::array<double, kValues> values_of(std::string_view line, std::uint64_t number) const {
+    if (line.find(',') != line.npos && has_decimal_commas(line))
+      fail(number,
+           "has commas inside numbers and other separators between them: write decimal "
+           "points");
+    std::array<double, kValues> values{};
+    std::size_t found = 0, column = 0;
+    for (; found < columns_.size(); ++column) {
+      const std::string_view field = next_field(line);
+      if (field.empty()) break;
+      for (std::size_t value = 0; value < columns_.size(); ++value) {
+        if (columns_[value] != column) continue;
+        if (!parse_float(field, values[value]))
+          fail(number, "number " + std::to_string(column + 1) + ", " + in_quotes(field) +
+                           ", is not a number");
+        ++found;
+      }
+    }
+    if (found < columns_.size())
+      fail(number, "has " + std::to_string(column) + " numbers instead of " +
+                       (has_colors() || has_names_ ? std::to_string(needed_columns()) : "three"));
+    return values;
+  }
+  std::size_t needed_columns() const {
+    return *std::max_element(columns_.begin(), columns_.end()) + 1;
+  }
+
+  void add(BatchedVoxels& points, std::string_view line, std::uint64_t number) const {
+    const std::array<double, kValues> values = values_of(line, number);
+    const Vec3d point{values[0], values[1], values[2]};
+    if (!has_colors()) return points.add(point);
+    Rgb8 color;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double value = values[kCoordinates + c];
+      if (!(value >= 0 && value <= color_range_))
+        fail(number, "colour " + std::string(fields_of(line)[columns_[kCoordinates + c]]) +
+                         " is not from 0 to " + std::to_string(static_cast<int>(color_range_)) +
+                         ", as those of the first points are");
+      color[c] = static_cast<std::uint8_t>(value * 255 / color_range_ + 0.5);
+    }
+    points.add(point, color);
+  }
+
+  std::string name_;
+  MappedFile file_;
+  std::uint64_t header_line_ = 0;  ///< The line with the names of the columns; 0: none.
+  bool has_names_ = false;
+  std::vector<std::size_t> columns_{0, 1, 2};  ///< Of the coordinates, and perhaps of the colour.
+  double color_range_ = 255;                   ///< The greatest component.
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace

@@ -24,6 +24,7 @@ class Binvox : public VoxelSource {
 
   bool has_points() const override { return false; }
   std::optional<Grid> grid() const override { return grid_; }
+  bool has_place() const override { return has_place_; }
   void visit_all(const VisitBatch& visit) const override {
     const MappedFile mapping(path_, MappedFile::Access::kSequential);
     const std::string_view text = text_of(mapping);
@@ -70,6 +71,7 @@ class Binvox : public VoxelSource {
         break;
       }
       if (line.starts_with("dim ")) read_numbers(line.substr(4), at + 4, size);
+      has_place_ |= line.starts_with("translate ") || line.starts_with("scale ");
       if (line.starts_with("translate ")) read_numbers(line.substr(10), at + 10, translate);
       if (line.starts_with("scale ")) read_numbers(line.substr(6), at + 6, scale);
       at = end + 1;
@@ -102,6 +104,7 @@ class Binvox : public VoxelSource {
 
   std::filesystem::path path_;
   Grid grid_;
+  bool has_place_ = false;
   std::int64_t side_ = 0;
   std::size_t data_ = 0;
 };

@@ -44,20 +44,24 @@ class TextValues {
 bool separates(char c) { return c == ' ' || c == ',' || (c >= '\t' && c <= '\r'); }
 
 void TextValues::fill_decimal(ValueType type, std::span<std::byte> bytes) {
-  with_type(type, [&](auto zero) {
-    for (std::size_t i = 0; i < bytes.size(); i += sizeof zero) {
-      skip_spaces();
-      if (at_ < text_.size() && text_[at_] == '+') ++at_;
-      const char* const begin = text_.data() + at_;
-      const char* const end = text_.data() + text_.size();
-      auto value = zero;
-      const auto [next, error] = std::from_chars(begin, end, value);
-      if (begin == end) fail("truncated: the volume has more values than the file");
-      if (error != std::errc() || (next != end && !separates(*next)))
-        fail("is not a number of the volume's type");
-      at_ += static_cast<std::uint64_t>(next - begin);
-      std::memcpy(bytes.data() + i, &value, sizeof value);
-    }
+  with_type(type, [&]<class T>(T zero) {
+    // No format has texts of these.
+    if constexpr (std::is_same_v<T, Half>)
+      fail("has a type that is not written as text");
+    else
+      for (std::size_t i = 0; i < bytes.size(); i += sizeof zero) {
+        skip_spaces();
+        if (at_ < text_.size() && text_[at_] == '+') ++at_;
+        const char* const begin = text_.data() + at_;
+        const char* const end = text_.data() + text_.size();
+        auto value = zero;
+        const auto [next, error] = std::from_chars(begin, end, value);
+        if (begin == end) fail("truncated: the volume has more values than the file");
+        if (error != std::errc() || (next != end && !separates(*next)))
+          fail("is not a number of the volume's type");
+        at_ += static_cast<std::uint64_t>(next - begin);
+        std::memcpy(bytes.data() + i, &value, sizeof value);
+      }
   });
 }
 
@@ -95,25 +99,25 @@ class DenseSource : public VoxelSource {
       throw Error(file_.path.string(), ErrorPlace::byte(file_.data.text().size()),
                   "truncated: the data begin at byte " + std::to_string(file_.begin));
     if (is_raw()) check_length();
+    if (file_.volume.channels == 4 && file_.volume.has_colors())
+      with_bytes([&](const FillBytes& fill) {
+        file_.volume.has_opaque_alpha = has_opaque_alpha(file_.volume, fill);
+        return false;
+      });
   }
 
   bool has_points() const override { return false; }
-  bool has_colors() const override { return file_.volume.channels > 1; }
-  std::optional<Grid> grid() const override { return file_.grid; }
+  bool has_colors() const override { return file_.volume.has_colors(); }
+  std::optional<Grid> grid() const override { return file_.map.grid(); }
+  bool has_place() const override { return file_.has_place; }
   std::vector<std::string> warnings() const override { return file_.warnings; }
 
   void visit_all(const VisitBatch& visit) const override {
-    switch (file_.encoding) {
-      case Encoding::kRaw:
-        return visit_raw(visit);
-      case Encoding::kPlanar:
-        return visit_planar(visit);
-      case Encoding::kGzip:
-        return visit_gzip(visit);
-      case Encoding::kAscii:
-      case Encoding::kHex:
-        return visit_text(visit);
-    }
+    with_bytes([&](const FillBytes& fill) {
+      visit_volume(file_.volume, fill,
+                   [&](const VoxelBatch& batch) { file_.map.visit_cubes(batch, visit); });
+      return true;
+    });
   }
 
  private:
@@ -122,46 +126,66 @@ class DenseSource : public VoxelSource {
   }
   std::string_view data() const { return file_.data.text().substr(file_.begin); }
 
-  void check_length() const {
+  void check_length() {
     const std::uint64_t size = data().size(), needed = file_.volume.bytes();
-    if (size < needed || (size > needed && !file_.may_have_more))
-      throw Error(file_.path.string(), ErrorPlace::byte(file_.begin + std::min(size, needed)),
-                  std::string(size < needed ? "truncated" : "trailing bytes") +
-                      ": the volume needs " + std::to_string(needed) + " bytes after byte " +
+    if (size < needed)
+      throw Error(file_.path.string(), ErrorPlace::byte(file_.begin + size),
+                  "truncated: the volume needs " + std::to_string(needed) + " bytes after byte " +
                       std::to_string(file_.begin) + ", the file has " + std::to_string(size));
+    if (size > needed && !file_.may_have_more)
+      file_.warnings.push_back(std::to_string(size - needed) +
+                               " bytes behind the volume are left out");
   }
 
-  void visit_raw(const VisitBatch& visit) const {
+  /// Calls read(fill), where fill() gives the bytes of the volume. If it returns true, it read all
+  /// of them; then checks what follows.
+  template <class Read>
+  void with_bytes(const Read& read) const {
+    switch (file_.encoding) {
+      case Encoding::kRaw:
+        return with_raw(read);
+      case Encoding::kPlanar:
+        return with_planar(read);
+      case Encoding::kGzip:
+        return with_gzip(read);
+      case Encoding::kAscii:
+      case Encoding::kHex:
+        return with_text(read);
+    }
+  }
+
+  template <class Read>
+  void with_raw(const Read& read) const {
     const char* next = data().data();
-    const auto fill = [&](std::span<std::byte> bytes) {
+    read([&](std::span<std::byte> bytes) {
       std::memcpy(bytes.data(), next, bytes.size());
       next += bytes.size();
-    };
-    visit_volume(file_.volume, fill, visit);
+    });
   }
 
   /// Gathers the channels of each voxel.
-  void visit_planar(const VisitBatch& visit) const {
+  template <class Read>
+  void with_planar(const Read& read) const {
     const auto channels = static_cast<std::uint64_t>(file_.volume.channels);
     const std::uint64_t plane = file_.volume.bytes() / channels;
     const char* next = data().data();
-    const auto fill = [&](std::span<std::byte> bytes) {
+    read([&](std::span<std::byte> bytes) {
       for (std::size_t i = 0; i < bytes.size(); i += channels, ++next)
         for (std::size_t c = 0; c < channels; ++c)
           bytes[i + c] = static_cast<std::byte>(next[c * plane]);
-    };
-    visit_volume(file_.volume, fill, visit);
+    });
   }
 
-  void visit_gzip(const VisitBatch& visit) const {
+  template <class Read>
+  void with_gzip(const Read& read) const {
     GzipStream stream(file_.path, file_.data.text(), file_.begin);
     stream.skip(file_.skipped);
-    visit_volume(
-        file_.volume, [&](std::span<std::byte> bytes) { stream.fill(bytes); }, visit);
-    if (!file_.may_have_more) stream.expect_end();
+    if (read([&](std::span<std::byte> bytes) { stream.fill(bytes); }) && !file_.may_have_more)
+      stream.expect_end();
   }
 
-  void visit_text(const VisitBatch& visit) const {
+  template <class Read>
+  void with_text(const Read& read) const {
     TextValues values(file_.path, file_.data.text(), file_.begin);
     const auto fill = [&](std::span<std::byte> bytes) {
       if (file_.encoding == Encoding::kHex)
@@ -169,8 +193,7 @@ class DenseSource : public VoxelSource {
       else
         values.fill_decimal(file_.volume.type, bytes);
     };
-    visit_volume(file_.volume, fill, visit);
-    values.expect_end();
+    if (read(fill)) values.expect_end();
   }
 
   DenseFile file_;

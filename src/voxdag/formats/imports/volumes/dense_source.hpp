@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "voxdag/core/io/mapped_file.hpp"
-#include "voxdag/formats/imports/volumes/dense_volume.hpp"
+#include "voxdag/formats/imports/volumes/volume_grid.hpp"
 
 namespace voxdag {
 
@@ -20,7 +20,8 @@ enum class Encoding : std::uint8_t {
 /// A file with a dense volume, as the parser of its header describes it.
 struct DenseFile {
   DenseVolume volume = {};
-  Grid grid = {};
+  VolumeMap map = VolumeMap{};
+  bool has_place = false;  ///< The file says where the volume lies, or how large its voxels are.
   std::vector<std::string> warnings = {};
   std::filesystem::path path = {};  ///< Of the data.
   MappedFile data;
@@ -31,7 +32,8 @@ struct DenseFile {
 };
 
 /// Returns the source of the file's volume. Throws Error if the file is shorter than raw data must
-/// be, and visit_all() if other data end early, are damaged, or do not end where they should.
+/// be, and visit_all() if other data end early, are damaged, or do not end where they should. Bytes
+/// behind raw data are left out with a warning.
 std::unique_ptr<VoxelSource> make_dense_source(DenseFile file);
 
 }  // namespace voxdag

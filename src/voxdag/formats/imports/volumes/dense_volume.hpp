@@ -21,18 +21,25 @@ struct DenseVolume {
   ValueType type = ValueType::kUint8;
   bool is_big_endian = false;
   bool is_z_fastest = false;  ///< The order is z, y, x; otherwise x, y, z.
-  /// 1: values. 3 or 4: red, green, blue and alpha of type kUint8, next to each other.
+  /// 1: values. 3 or 4: red, green, blue and alpha of type kUint8, next to each other; of a list,
+  /// the values of its layers, next to each other.
   int channels = 1;
+  bool is_list = false;  ///< A voxel is set if it is set in any layer.
+  int repeats = 1;       ///< Volumes of this size behind each other; those of a list are layers.
+  static constexpr std::uint64_t kMaxLayers = 4096;
   double slope = 1, intercept = 0;  ///< A value is slope * number + intercept.
   /// Values that are at least this set their voxel; without it, all values but 0. NaN sets none.
-  /// With 4 channels the value is alpha; with 3 channels it is the greatest of them.
+  /// Of a colour with alpha the value is alpha, of one without the greatest channel.
   std::optional<double> threshold;
+  bool has_opaque_alpha = false;  ///< Alpha is 255 everywhere, so it is no value.
 
+  bool has_colors() const { return channels > 1 && !is_list; }
   std::uint64_t voxel_bytes() const {
     return bytes_of(type) * static_cast<std::uint64_t>(channels);
   }
-  /// Returns the length of the stream: less than 2^64, because a side has at most 2^20 voxels.
-  std::uint64_t bytes() const { return size[0] * size[1] * size[2] * voxel_bytes(); }
+  std::uint64_t voxels() const { return size[0] * size[1] * size[2]; }
+  /// Returns the length of the stream. Throws Error if it is not less than 2^63.
+  std::uint64_t bytes() const;
 };
 
 /// Throws Error unless every side has 1 to 1,048,576 voxels.
@@ -43,6 +50,9 @@ int levels_of(const VolumeSize& size);
 
 /// Fills the span with the next bytes of a stream, or throws Error.
 using FillBytes = std::function<void(std::span<std::byte>)>;
+
+/// Returns whether all colours of a volume with alpha have the alpha 255. Reads until one has not.
+bool has_opaque_alpha(const DenseVolume& volume, const FillBytes& fill);
 
 /// Calls visit() for the voxels that are set, in the order of the stream, with their colours if the
 /// volume has channels. Reads exactly volume.bytes(), 64 KiB at a time.

@@ -1,5 +1,6 @@
 /// Reads NIfTI volumes. Format: nifti1.h and nifti2.h of the NIfTI Data Format Working Group
 /// (nifti.nimh.nih.gov).
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -199,25 +200,36 @@ class Parser {
 
   void parse_placement() {
     VolumePlacement& placement = header_.placement;
+    Vec3d spacing;
     for (int axis = 0; axis < 3; ++axis) {
-      const double spacing = std::abs(real(places_.pixdim, axis + 1));
-      placement.spacing[axis] = spacing == 0 ? 1 : spacing;
+      spacing[axis] = std::abs(real(places_.pixdim, axis + 1));
+      placement.is_known |= spacing[axis] != 0 && spacing[axis] != 1;
+      if (spacing[axis] == 0) spacing[axis] = 1;
+      Vec3d& step = placement.steps[static_cast<std::size_t>(axis)];
+      step = step * spacing[axis];
     }
     if (integer(places_.sform, places_.code_bytes) > 0) {
       // Three rows of a matrix whose last column is the place of voxel (0, 0, 0).
       placement.first_centre =
           Vec3d{real(places_.srow, 3), real(places_.srow, 7), real(places_.srow, 11)};
-      for (int axis = 0; axis < 3; ++axis) {
-        const Vec3d direction{real(places_.srow, axis), real(places_.srow, 4 + axis),
-                              real(places_.srow, 8 + axis)};
-        placement.spacing[axis] = length(direction);
-        placement.is_turned |= !is_along(direction, axis);
-      }
+      for (int axis = 0; axis < 3; ++axis)
+        placement.steps[static_cast<std::size_t>(axis)] = {
+            real(places_.srow, axis), real(places_.srow, 4 + axis), real(places_.srow, 8 + axis)};
+      placement.is_known = true;
     } else if (integer(places_.qform, places_.code_bytes) > 0) {
       placement.first_centre = vector(places_.qoffset);
-      const Vec3d quaternion = vector(places_.quaternion);
-      // The sign of pixdim[0] mirrors z. The quaternion's real part follows from the others.
-      placement.is_turned = real(places_.pixdim) < 0 || !(length(quaternion) < 1e-5);
+      placement.is_known = true;
+      // The quaternion's real part follows from the others. The sign of pixdim[0] mirrors z.
+      const Vec3d q = vector(places_.quaternion);
+      const double b = q.x, c = q.y, d = q.z, a = std::sqrt(std::max(0.0, 1 - dot(q, q)));
+      const double mirror = real(places_.pixdim) < 0 ? -1 : 1;
+      placement.steps = {
+          Vec3d{a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)} *
+              spacing.x,
+          Vec3d{2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)} *
+              spacing.y,
+          Vec3d{2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - b * b - c * c} *
+              (spacing.z * mirror)};
     }
   }
 
@@ -255,7 +267,8 @@ std::unique_ptr<VoxelSource> open_nifti(const std::filesystem::path& path,
                  .encoding = is_gzip ? Encoding::kGzip : Encoding::kRaw,
                  .may_have_more = header.has_more_volumes};
   file.volume.threshold = threshold;
-  file.grid = grid_of_volume(path, header.volume.size, header.placement, file.warnings);
+  file.map = VolumeMap(path, header.volume.size, header.placement, file.warnings);
+  file.has_place = header.placement.is_known;
   if (header.has_more_volumes)
     file.warnings.emplace_back("the file has several volumes; only the first one is read");
   (is_gzip ? file.skipped : file.begin) = header.data;

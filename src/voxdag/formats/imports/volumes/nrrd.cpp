@@ -41,15 +41,19 @@ std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
   MappedFile mapping(path, MappedFile::Access::kSequential);
   const NrrdHeader header = parse_nrrd_header(path, mapping.text());
   std::vector<std::string> warnings;
-  const Grid grid = grid_of_volume(path, header.volume.size, header.placement, warnings);
+  const VolumeMap map(path, header.volume.size, header.placement, warnings);
   const bool is_detached = !header.data_file.empty();
   const std::filesystem::path data = is_detached ? path.parent_path() / header.data_file : path;
   if (is_detached) mapping = MappedFile(data, MappedFile::Access::kSequential);
-  DenseFile file{
-      header.volume,  grid, warnings, data, std::move(mapping), is_detached ? 0 : header.end,
-      header.encoding};
+  DenseFile file{.volume = header.volume,
+                 .map = map,
+                 .has_place = header.placement.is_known,
+                 .warnings = std::move(warnings),
+                 .path = data,
+                 .data = std::move(mapping),
+                 .begin = is_detached ? 0 : header.end,
+                 .encoding = header.encoding};
   file.volume.threshold = threshold;
-  file.may_have_more = is_detached && header.encoding == Encoding::kRaw;
   skip_to_data(header, file);
   return make_dense_source(std::move(file));
 }

@@ -144,8 +144,9 @@ class NrrdHeaderParser {
     if (name == "lineskip") name = "line skip";
     if (name == "byteskip") name = "byte skip";
     const std::string value(trimmed(line.substr(colon + 1)));
-    if (!fields_.try_emplace(name, Field{value, number}).second)
-      fail(number, "the field " + name_in_quotes(name) + " is there twice");
+    const auto [field, is_new] = fields_.try_emplace(name, Field{value, number});
+    if (!is_new && field->second.value != value)
+      fail(number, "the field " + name_in_quotes(name) + " is there twice, with other values");
   }
 
   const Field* find(const std::string& name) const {
@@ -197,18 +198,32 @@ class NrrdHeaderParser {
     const Field& dimension = get("dimension");
     axes_ = number_in<std::uint64_t>(dimension, dimension.value);
     const char* const kAllowed =
-        "the volume must have 3 axes, or 4 if the first one has 3 or 4 channels of uint8";
+        "the volume must have 3 axes, or 4 if the first one has 3 or 4 channels of uint8, or if "
+        "the "
+        "kind of the first or last one is list";
     if (axes_ != 3 && axes_ != 4) fail(dimension.line, kAllowed);
     const Field& sizes = get("sizes");
     std::vector<std::uint64_t> numbers;
     for (const std::string_view word : words_of_axes(sizes))
       numbers.push_back(number_in<std::uint64_t>(sizes, word));
-    if (axes_ == 4) {
+    std::vector<std::string> kinds;
+    if (const Field* field = find("kinds"))
+      for (const std::string_view word : words_of_axes(*field)) kinds.push_back(lower(word));
+    is_list_last_ = axes_ == 4 && !kinds.empty() && kinds[3] == "list";
+    if (axes_ == 4 && (is_list_last_ || (!kinds.empty() && kinds[0] == "list"))) {
+      const std::uint64_t layers = numbers[is_list_last_ ? 3 : 0];
+      if (layers < 1 || layers > DenseVolume::kMaxLayers)
+        fail(sizes.line,
+             "the list must have 1 to " + std::to_string(DenseVolume::kMaxLayers) + " layers");
+      (is_list_last_ ? volume.repeats : volume.channels) = static_cast<int>(layers);
+      volume.is_list = true;
+    } else if (axes_ == 4) {
       if ((numbers[0] != 3 && numbers[0] != 4) || volume.type != ValueType::kUint8)
         fail(sizes.line, kAllowed);
       volume.channels = static_cast<int>(numbers[0]);
     }
-    std::copy_n(numbers.end() - 3, 3, volume.size.begin());
+    std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(first_axis()), 3,
+                volume.size.begin());
     check_volume_size(path_, volume.size);
   }
 
@@ -247,24 +262,33 @@ class NrrdHeaderParser {
     if (const Field* spacings = find("spacings")) {
       const auto words = words_of_axes(*spacings);
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto value = number_in<double>(*spacings, words[axes_ - 3 + axis]);
+        const auto value = number_in<double>(*spacings, words[first_axis() + axis]);
         // NaN: not known.
-        if (!std::isnan(value)) placement.spacing[static_cast<int>(axis)] = value;
+        if (std::isnan(value)) continue;
+        if (!(value > 0))
+          fail(spacings->line, "the spacing of the voxels must be between 1e-30 and 1e30, not " +
+                                   std::string(words[first_axis() + axis]));
+        placement.steps[axis] = placement.steps[axis] * value;
+        placement.is_known = true;
       }
     }
     if (const Field* directions = find("space directions")) {
       const auto words = words_of_axes(*directions);
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::string_view word = words[axes_ - 3 + static_cast<std::size_t>(axis)];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::string_view word = words[first_axis() + axis];
         if (word == "none") continue;
-        const Vec3d direction = vector_in(*directions, word);
-        placement.spacing[axis] = length(direction);
-        placement.is_turned |= !is_along(direction, axis);
+        placement.steps[axis] = vector_in(*directions, word);
+        placement.is_known = true;
       }
     }
-    if (const Field* origin = find("space origin"))
+    if (const Field* origin = find("space origin")) {
       placement.first_centre = vector_in(*origin, origin->value);
+      placement.is_known = true;
+    }
   }
+
+  /// Returns the number of the volume's x axis.
+  std::size_t first_axis() const { return axes_ == 4 && !is_list_last_ ? 1 : 0; }
 
   /// Reads "(x,y,z)".
   Vec3d vector_in(const Field& field, std::string_view word) const {
@@ -287,6 +311,7 @@ class NrrdHeaderParser {
   std::map<std::string, Field> fields_;
   NrrdHeader header_;
   std::uint64_t axes_ = 0;
+  bool is_list_last_ = false;  ///< The last axis counts layers.
 };
 
 }  // namespace

@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <charconv>
+#include <limits>
 #include <string>
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/core/printable.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/volumes/dense_volume.hpp"
 #include "voxdag/formats/imports/volumes/value_test.hpp"
@@ -42,6 +45,43 @@ std::vector<std::string> names_of_slices(const std::filesystem::path& folder) {
   return names;
 }
 
+/// Returns the last number in a name; nothing if it has none of at most 18 digits.
+std::optional<std::int64_t> last_number(std::string_view name) {
+  const std::size_t end = name.find_last_of("0123456789");
+  if (end == name.npos) return std::nullopt;
+  std::size_t begin = end;
+  while (begin > 0 && is_decimal(name[begin - 1])) --begin;
+  std::int64_t number = 0;
+  const auto [next, error] = std::from_chars(name.data() + begin, name.data() + end + 1, number);
+  if (error != std::errc()) return std::nullopt;
+  return number;
+}
+
+/// Returns a warning if numbers are missing between those of the names; empty if none are.
+std::string missing_slices(const std::vector<std::string>& names) {
+  std::int64_t least = std::numeric_limits<std::int64_t>::max(), missing = 0;
+  std::size_t first = 0;
+  for (const bool is_counting : {false, true})
+    for (std::size_t i = 1; i < names.size(); ++i) {
+      const auto a = last_number(names[i - 1]), b = last_number(names[i]);
+      if (!a || !b || *b <= *a) return {};
+      const std::int64_t step = *b - *a;
+      if (!is_counting) least = std::min(least, step);
+      if (!is_counting || step == least) continue;
+      if (missing == 0) first = i;
+      missing += step / least - 1;
+    }
+  // Two slices have one step, which is the least one: a step of 1 is expected of them.
+  if (names.size() == 2 && least > 1) {
+    missing = least - 1;
+    first = 1;
+  }
+  if (missing == 0) return {};
+  return std::to_string(missing) + (missing == 1 ? " slice is" : " slices are") +
+         " missing, the first between " + in_quotes(names[first - 1]) + " and " +
+         in_quotes(names[first]) + "; the others lie next to each other";
+}
+
 class PngSlices : public VoxelSource {
  public:
   PngSlices(std::filesystem::path folder, std::optional<double> threshold)
@@ -54,11 +94,17 @@ class PngSlices : public VoxelSource {
                           names_.size()};
     check_volume_size(folder_, size);
     grid_.levels = levels_of(size);
+    if (first.channels() == 4) has_opaque_alpha_ = are_opaque();
   }
 
   bool has_points() const override { return false; }
   bool has_colors() const override { return has_colors_; }
   std::optional<Grid> grid() const override { return grid_; }
+  std::vector<std::string> warnings() const override {
+    const std::string missing = missing_slices(names_);
+    if (missing.empty()) return {};
+    return {missing};
+  }
 
   void visit_all(const VisitBatch& visit) const override {
     BatchedVoxels voxels(visit);
@@ -93,6 +139,17 @@ class PngSlices : public VoxelSource {
     if (image.channels() >= 3 && !has_colors_) fail("has colours; the first slice is grey");
   }
 
+  /// Returns whether no pixel is transparent. Reads until one is.
+  bool are_opaque() const {
+    return std::all_of(names_.begin(), names_.end(), [&](const std::string& name) {
+      const DecodedImage image = decode(name);
+      for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x)
+          if (image.pixel(x, y)[3] != 65535) return false;
+      return true;
+    });
+  }
+
   template <class Test>
   void visit_slice(const DecodedImage& image, std::size_t z, const Test& is_set,
                    BatchedVoxels& voxels) const {
@@ -103,8 +160,9 @@ class PngSlices : public VoxelSource {
       for (int x = 0; x < width_; ++x) {
         const DecodedImage::Rgba pixel = image.pixel(x, y);
         if (channels == 2 && pixel[3] == 0) continue;
-        const std::uint16_t value =
-            channels == 4 ? pixel[3] : std::max({pixel[0], pixel[1], pixel[2]});
+        const std::uint16_t value = channels == 4 && !has_opaque_alpha_
+                                        ? pixel[3]
+                                        : std::max({pixel[0], pixel[1], pixel[2]});
         // pixel() multiplies values of 8 bits by 257.
         if (!is_set(has_8_bits ? value / 257 : value)) continue;
         const Vec3d place{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
@@ -124,6 +182,7 @@ class PngSlices : public VoxelSource {
   std::optional<double> threshold_;
   int width_ = 0, height_ = 0;
   bool has_colors_ = false;
+  bool has_opaque_alpha_ = false;  ///< Programs save slices with an alpha that says nothing.
   Grid grid_;
 };
 

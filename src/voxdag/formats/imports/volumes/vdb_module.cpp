@@ -69,11 +69,13 @@ class Vdb : public VoxelSource {
   }
 
   bool has_points() const override { return false; }
-  std::optional<Grid> grid() const override { return grid_; }
+  bool has_place() const override { return true; }
+  std::optional<Grid> grid() const override { return map_.grid(); }
   std::vector<std::string> warnings() const override { return warnings_; }
 
   void visit_all(const VisitBatch& visit) const override {
-    BatchedVoxels voxels(visit);
+    const VisitBatch visit_cubes = [&](const VoxelBatch& batch) { map_.visit_cubes(batch, visit); };
+    BatchedVoxels voxels(visit_cubes);
     with_grid(*vdb_, [&](const auto& grid) {
       for_each_box(grid, rule_, [&](const openvdb::CoordBBox& box) {
         const Vec3l lo = vector_of(box.min()) - lo_, hi = vector_of(box.max()) - lo_;
@@ -112,7 +114,7 @@ class Vdb : public VoxelSource {
     for (int axis = 0; axis < 3; ++axis)
       size[axis] = static_cast<std::uint64_t>(hi[axis] - lo[axis] + 1);
     check_volume_size(path_, size);
-    grid_ = grid_of_volume(path_, size, placement(), warnings_);
+    map_ = VolumeMap(path_, size, placement(), warnings_);
   }
 
   /// OpenVDB maps whole numbers to the centres of voxels.
@@ -121,13 +123,13 @@ class Vdb : public VoxelSource {
     const openvdb::Vec3d first = vector_from(lo_);
     VolumePlacement placement;
     placement.first_centre = vector_of(transform.indexToWorld(first));
-    placement.is_turned = !transform.isLinear();
+    placement.is_known = true;
+    placement.is_curved = !transform.isLinear();
     for (int axis = 0; axis < 3; ++axis) {
       openvdb::Vec3d next = first;
       next[axis] += 1;
-      const Vec3d direction = vector_of(transform.indexToWorld(next)) - *placement.first_centre;
-      placement.spacing[axis] = length(direction);
-      placement.is_turned |= !is_along(direction, axis);
+      placement.steps[static_cast<std::size_t>(axis)] =
+          vector_of(transform.indexToWorld(next)) - *placement.first_centre;
     }
     return placement;
   }
@@ -140,7 +142,7 @@ class Vdb : public VoxelSource {
   openvdb::GridBase::ConstPtr vdb_;
   ValueRule rule_;
   Vec3l lo_;
-  Grid grid_;
+  VolumeMap map_;
   std::vector<std::string> warnings_;
 };
 

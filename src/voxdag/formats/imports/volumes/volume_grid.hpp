@@ -1,5 +1,6 @@
 #pragma once
 /// Where a volume lies in the world.
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,18 +12,45 @@ namespace voxdag {
 
 /// The place of a volume in world units, as its header gives it.
 struct VolumePlacement {
-  Vec3d spacing{1, 1, 1};             ///< Between the centres of voxels, along x, y and z.
+  /// From the centre of a voxel to that of the next one, along x, y and z of the volume.
+  std::array<Vec3d, 3> steps{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
   std::optional<Vec3d> first_centre;  ///< Of voxel (0, 0, 0); without it, its corner is at 0.
-  bool is_turned = false;             ///< The axes are not those of the world.
+  bool is_curved = false;             ///< The steps are not the same everywhere.
+  bool is_known = false;              ///< The file says something about it.
 };
 
-/// Returns whether a direction is that of the axis, but for rounding.
-bool is_along(Vec3d direction, int axis);
+/// Maps the voxels of a volume to those of a grid, which are cubes along the axes of the world.
+/// Axes that point along other axes of the world, or against them, are followed exactly. A voxel
+/// that is a box becomes the cubes whose centres lie in it; their side is the least one of the box.
+class VolumeMap {
+ public:
+  /// The voxels are those of the grid.
+  explicit VolumeMap(const Grid& grid = {}) : grid_(grid) {}
+  /// Adds a warning if the voxels are no cubes, or the axes are turned otherwise: then those of the
+  /// world that are nearest take their places. Throws Error for steps whose length is not between
+  /// 1e-30 and 1e30, a place beyond 1e30, more than 4096 cubes for a voxel, and more cubes a side
+  /// than a grid can have.
+  VolumeMap(const std::filesystem::path& path, const VolumeSize& size,
+            const VolumePlacement& placement, std::vector<std::string>& warnings);
 
-/// Returns the grid of a volume. Voxels are cubes of the smallest spacing. Adds a warning if the
-/// file has other voxels, or turned ones. Throws Error for a spacing that is not between 1e-30 and
-/// 1e30, and for a place beyond 1e30.
-Grid grid_of_volume(const std::filesystem::path& path, const VolumeSize& size,
-                    const VolumePlacement& placement, std::vector<std::string>& warnings);
+  const Grid& grid() const { return grid_; }
+  /// Passes the cubes of some voxels to `visit`.
+  void visit_cubes(const VoxelBatch& voxels, const VisitBatch& visit) const;
+
+ private:
+  /// What becomes of an axis of the volume.
+  struct Axis {
+    int world = 0;
+    bool is_mirrored = false;
+    double voxels = 0, cubes_per_voxel = 1;
+
+    /// Returns the first cube whose centre does not lie before the voxels that are counted.
+    double first_cube(double counted) const;
+  };
+
+  Grid grid_;
+  std::array<Axis, 3> axes_;
+  bool is_identity_ = true;
+};
 
 }  // namespace voxdag

@@ -18,18 +18,19 @@ std::unique_ptr<VoxelSource> open_binvox(const std::filesystem::path& path);
 std::unique_ptr<VoxelSource> open_nifti(const std::filesystem::path& path,
                                         std::optional<double> threshold);
 
-/// Opens an array of NumPy. Its shape decides: (N, 3) are points or voxels, as open_npy_points()
-/// says. (X, Y, Z) is a volume of bools, integers, float32 or float64; element [x][y][z] belongs to
-/// voxel (x, y, z). (X, Y, Z, 3) and (X, Y, Z, 4) of uint8 are a volume of colours: an RGBA voxel
-/// is set by its alpha, an RGB voxel by the greatest of its channels. Volumes are in C or Fortran
-/// order. Throws Error if a threshold is given for points.
+/// Opens an array of NumPy. Its shape decides: (N, 3) and (N) are points or voxels, as
+/// open_npy_points() says. (X, Y, Z) is a volume of bools, integers or real numbers; element
+/// [x][y][z] belongs to voxel (x, y, z). (X, Y, Z, 3) and (X, Y, Z, 4) of uint8 are a volume of
+/// colours: an RGBA voxel is set by its alpha, an RGB voxel by the greatest of its channels.
+/// Volumes are in C or Fortran order. Throws Error if a threshold is given for points.
 std::unique_ptr<VoxelSource> open_npy(const std::filesystem::path& path,
                                       std::optional<double> threshold);
 
 /// Opens a volume of NRRD, with its data in the same file or in one of the same folder: raw, gzip,
 /// ascii or hex. The first axis is x. A first axis of 3 or 4 values of uint8 is a colour: an RGBA
-/// voxel is set by its alpha, an RGB voxel by the greatest of its channels. The space origin is the
-/// centre of voxel (0, 0, 0). Format: see nrrd_header.hpp.
+/// voxel is set by its alpha, an RGB voxel by the greatest of its channels. If the kind of the
+/// first or last of four axes is "list", its layers are joined. The space origin is the centre of
+/// voxel (0, 0, 0). Format: see nrrd_header.hpp.
 std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
                                        std::optional<double> threshold);
 
@@ -40,9 +41,9 @@ std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
 ///
 /// A grey pixel sets its voxel if its value is at least the threshold, or not 0 without one; if it
 /// has alpha, alpha must not be 0 either. An RGB pixel has the greatest of its channels as value,
-/// an RGBA pixel its alpha. Values are 0 to 255, or 0 to 65535 in files of 16 bits. The volume has
-/// colours if the first slice has; all slices are grey if the first one is. Images are decoded one
-/// at a time.
+/// an RGBA pixel its alpha, unless that is opaque in all slices. Values are 0 to 255, or 0 to 65535
+/// in files of 16 bits. The volume has colours if the first slice has; all slices are grey if the
+/// first one is. Images are decoded one at a time.
 std::unique_ptr<VoxelSource> open_png_slices(const std::filesystem::path& folder,
                                              std::optional<double> threshold);
 

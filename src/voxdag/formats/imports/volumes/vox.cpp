@@ -149,11 +149,15 @@ class Vox : public VoxelSource {
 
   bool has_points() const override { return false; }
   bool has_colors() const override { return true; }
+  bool has_palette() const override { return true; }
   std::optional<Grid> grid() const override { return grid_; }
+  Vec3l first_voxel() const override { return lo_; }
   std::vector<std::string> warnings() const override {
-    if (!file_.nodes.empty() || file_.models.size() < 2) return {};
-    return {"the file has no scene: its " + std::to_string(file_.models.size()) +
-            " models lie on top of each other"};
+    std::vector<std::string> warnings = file_.warnings;
+    if (file_.nodes.empty() && file_.models.size() > 1)
+      warnings.push_back("the file has no scene: its " + std::to_string(file_.models.size()) +
+                         " models lie on top of each other");
+    return warnings;
   }
 
   void visit_all(const VisitBatch& visit) const override {
@@ -163,11 +167,12 @@ class Vox : public VoxelSource {
       if (model.is_empty()) continue;
       const auto* bytes =
           reinterpret_cast<const unsigned char*>(mapping_.text().data() + model.first_voxel);
-      for (std::uint32_t i = 0; i < model.count; ++i, bytes += 4)
-        if (bytes[3] != 0)
-          voxels.add(
-              static_cast<Vec3d>(instance.place({bytes[0], bytes[1], bytes[2]}, model.size) - lo_),
-              file_.palette[bytes[3]]);
+      for (std::uint32_t i = 0; i < model.count; ++i, bytes += 4) {
+        const Vec3i voxel{bytes[0], bytes[1], bytes[2]};
+        if (bytes[3] != 0 && model.contains(voxel))
+          voxels.add(static_cast<Vec3d>(instance.place(voxel, model.size) - lo_),
+                     file_.palette[bytes[3]]);
+      }
     }
     voxels.finish();
   }

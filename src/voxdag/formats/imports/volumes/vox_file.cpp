@@ -146,12 +146,16 @@ class VoxParser {
     cursor_.bytes(content);
     VoxCursor chunks = cursor_.part(children);
     if (cursor_.left() > 0)
-      cursor_.fail("has " + std::to_string(cursor_.left()) + " trailing bytes");
+      file_.warnings.push_back(std::to_string(cursor_.left()) +
+                               " bytes behind the MAIN chunk are left out");
     while (chunks.left() > 0) parse_chunk(chunks);
     if (size_) chunks.fail("a SIZE chunk has no XYZI chunk");
-    if (declared_models_ && *declared_models_ != file_.models.size())
+    if (declared_models_ && *declared_models_ > file_.models.size())
       chunks.fail("has " + std::to_string(file_.models.size()) +
                   " models, but the PACK chunk says " + std::to_string(*declared_models_));
+    if (outside_ > 0)
+      file_.warnings.push_back(std::to_string(outside_) +
+                               " voxels lie outside of their models and are left out");
     return std::move(file_);
   }
 
@@ -159,9 +163,11 @@ class VoxParser {
   void parse_chunk(VoxCursor& chunks) {
     const std::uint64_t begin = chunks.at();
     const std::string_view id = chunks.bytes(4);
-    const std::uint32_t size = chunks.uint32(), children = chunks.uint32();
+    const std::uint32_t size = chunks.uint32();
+    // Chunks below MAIN have no children, but some writers give them a size of children, or put the
+    // chunks of a model into PACK. What follows is a chunk in all cases.
+    chunks.uint32();
     VoxCursor content = chunks.part(size);
-    chunks.bytes(children);
     if (id == "PACK") declared_models_ = content.uint32();
     if (id == "SIZE") parse_size(content);
     if (id == "XYZI") parse_voxels(content);
@@ -195,18 +201,21 @@ class VoxParser {
       const std::string_view voxel = content.bytes(4);
       const Vec3i at{static_cast<unsigned char>(voxel[0]), static_cast<unsigned char>(voxel[1]),
                      static_cast<unsigned char>(voxel[2])};
-      if (at.x >= model.size.x || at.y >= model.size.y || at.z >= model.size.z)
-        content.fail_at(content.at() - 4, "the voxel lies outside of its model");
       if (voxel[3] == 0) continue;
+      if (!model.contains(at)) {
+        ++outside_;
+        continue;
+      }
       model.lo = min(model.lo, at);
       model.hi = max(model.hi, at);
     }
     file_.models.push_back(model);
   }
 
-  /// The colours in the file are those of the indices 1 to 255, and one that is not used.
+  /// The colours in the file are those of the indices 1 to 255, and one that is not used. Some
+  /// writers stop after the last colour that they use.
   void parse_palette(VoxCursor& content) {
-    for (std::size_t i = 1; i <= 256; ++i) {
+    for (std::size_t i = 1; i <= 256 && content.left() > 0; ++i) {
       const std::string_view color = content.bytes(4);
       for (std::size_t c = 0; i < 256 && c < 3; ++c)
         file_.palette[i][c] = static_cast<std::uint8_t>(color[c]);
@@ -262,6 +271,7 @@ class VoxParser {
   VoxFile file_;
   std::optional<Vec3i> size_;  ///< Of the model whose voxels come next.
   std::optional<std::uint32_t> declared_models_;
+  std::uint64_t outside_ = 0;  ///< Voxels.
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct VoxModel {
   std::uint32_t count = 0;        ///< Voxels in the file, also empty ones.
   Vec3i lo{256, 256, 256}, hi{};  ///< Least and greatest coordinates of the voxels.
   bool is_empty() const { return lo.x > hi.x; }
+  bool contains(Vec3i voxel) const {
+    return voxel.x < size.x && voxel.y < size.y && voxel.z < size.z;
+  }
 };
 
 /// A signed permutation of the axes: component `row` of the result is component `axis[row]`,
@@ -48,6 +52,7 @@ struct VoxFile {
   std::array<Rgb8, 256> palette{};
   std::map<std::int32_t, VoxNode> nodes;  ///< By id; empty for a file without a scene.
   std::set<std::int32_t> hidden_layers;
+  std::vector<std::string> warnings;
 };
 
 /// Parses a file's bytes; memory is a small multiple of them. Ignores chunks of other kinds; IMAP
