@@ -35,7 +35,7 @@ refused and writes nothing.
     "Render and view": """After reading this page you can render pictures and films, and show a DAG in the browser.""",
     "Trace and query": """After reading this page you can cast rays at a file, and ask questions about the voxels of a DAG.
 [arrays.md](../arrays.md) has the types and shapes of the arrays, and [json.md](../json.md) has the keys of `--json`.""",
-    "Benchmark": """After reading this page you can list the benchmarks and their options.
+    "Benchmark": """After reading this page you can list the benchmarks; `voxdag bench NAME --help` prints the options of one.
 [lab/README.md](../../lab/README.md) says how to measure with them, and what their tables and JSON mean.""",
     "Shell": """After reading this page you can complete command lines of voxdag with the Tab key.""",
 }
@@ -163,7 +163,10 @@ def command_text(program, words, level):
     if words[-1] in MORE and len(words) == 1:
         parts.append(wrapped("More: " + ", ".join(map(link, MORE[words[-1]])) + "."))
     for _, rows in text.commands():
-        parts += [command_text(program, [*words, name], level + 1) for name, _ in rows]
+        if words == ["bench"]:  # Their own --help describes the benchmarks.
+            parts.append(table("benchmark", rows))
+        else:
+            parts += [command_text(program, [*words, name], level + 1) for name, _ in rows]
     return "\n\n".join(parts)
 
 

@@ -53,7 +53,12 @@ options=(-DVOXDAG_EXTENDED_TESTS=OFF -DVOXDAG_BUILD_LAB=OFF -DVOXDAG_CUDA=OFF -D
   options=(-DVOXDAG_EXTENDED_TESTS=ON -DVOXDAG_BUILD_LAB=ON -DVOXDAG_CUDA=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenVDB=OFF)
 echo "== g++"
 cmake --preset release -DVOXDAG_WERROR=ON -DVOXDAG_PYTHON=ON "${options[@]}" >/dev/null
-cmake --build --preset release -- -j "$jobs"
+if [ "$extended" = yes ]; then
+  cmake --build --preset release -- -j "$jobs"
+else
+  # Fails if compiling costs a third more than it did.
+  scripts/compile_cost.py --limit ordinary build/release -j "$jobs"
+fi
 
 if [ "$extended" = yes ]; then
   echo "== clang"

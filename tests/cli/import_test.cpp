@@ -62,7 +62,11 @@ TEST_F(ImportCommand, PointsNeedAGrid) {
   write_text(path("p.xyz"), "0 0 0\n1 two 3\n");
   refused({path("p.xyz"), "-r", "16"}, 1, path("p.xyz") + ": line 2: number 2");
   write_text(path("b.binvox"), "#binvox 1\ndim 4 4 4\ndata\n");
-  refused({path("b.binvox"), "--voxel-size", "1"}, 1, "are for points");
+  refused({path("b.binvox"), "--bounds", "0,0,0,1,1,1"}, 1, "is for points");
+  write_text(path("b.binvox"), "#binvox 1\ndim 4 4 4\nscale 2\ndata\n");
+  refused({path("b.binvox"), "--voxel-size", "1"}, 1, "says itself where its voxels lie");
+  refused({path("b.binvox"), "--origin", "1,2,3"}, 1, "says itself where its voxels lie");
+  refused({path("p.xyz"), "-r", "16", "--origin", "1,2,3"}, 1, "--origin goes with --voxel-size");
   refused({path("b.binvox")}, 1, "ends after 0 of 64 values");
 }
 
@@ -127,13 +131,13 @@ TEST_F(ImportCommand, VolumesHaveAThreshold) {
                  values + "\n");
   const ProcessResult all = run_voxdag({"import", path("v.nrrd"), "-o", path("v.vdag")});
   ASSERT_EQ(all.status, 0) << all.err;
-  EXPECT_NE(all.out.find("63 voxels of 4³"), std::string::npos) << all.out;
+  EXPECT_NE(all.out.find("126 voxels of 8³"), std::string::npos) << all.out;
   EXPECT_NE(all.err.find("cubes"), std::string::npos) << all.err;
   const ProcessResult some =
       run_voxdag({"import", path("v.nrrd"), "--threshold", "60", "-o", path("v.vdag"), "-q"});
   EXPECT_EQ(some.status, 0) << some.err;
   const ProcessResult count = run_voxdag({"query", path("v.vdag"), "--count", "--json"});
-  EXPECT_NE(count.out.find("4"), std::string::npos) << count.out;
+  EXPECT_NE(count.out.find("8"), std::string::npos) << count.out;
   expect_failure(
       run_voxdag({"import", path("v.nrrd"), "--threshold", "many", "-o", path("n.vdag")}), 2,
       "--threshold");

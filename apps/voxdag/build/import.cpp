@@ -134,14 +134,17 @@ void add_import_command(const Command& program, Session& session) {
       .required();
   command.text("-o,--output", arguments->output, "OUT", "The .vdag file to write").required();
   ImportOptions& options = arguments->options;
-  command.parsed("-r,--resolution", options.levels, parse_levels, "N",
-                 "Voxels per side: a power of two from 4 to 1048576 (default for voxels: that of "
-                 "FILE, or the least that holds them)");
-  command.parsed(
-      "--voxel-size", options.voxel_size, parse_positive, "SIZE",
-      "For points, instead of -r: side of a voxel, in the units of the points; the grid "
-      "then begins half a voxel below the least coordinates. For voxels whose file does not "
-      "say it: side of a voxel");
+  const Option resolution = command.parsed(
+      "-r,--resolution", options.levels, parse_levels, "N",
+      "Voxels per side: a power of two from 4 to 1048576 (default for voxels: that of "
+      "FILE, or the least that holds them)");
+  command
+      .parsed(
+          "--voxel-size", options.voxel_size, parse_positive, "SIZE",
+          "For points, instead of -r: side of a voxel, in the units of the points; the grid "
+          "then begins half a voxel below the least coordinates. For voxels whose file does not "
+          "say it: side of a voxel")
+      .not_with(resolution);
   command.parsed("--origin", options.origin, parse_vec3, "X,Y,Z",
                  "Lower corner of the grid, for the same files (default: 0,0,0 for voxels)");
   command.parsed("--bounds", options.bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",

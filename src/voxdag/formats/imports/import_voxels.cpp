@@ -27,7 +27,7 @@ std::size_t voxels_in_memory(const MemoryBudget* memory, std::size_t bytes_per_v
 /// The least and greatest coordinates in the file.
 struct Extent {
   Vec3d lo{HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  std::uint64_t count = 0;
+  std::uint64_t count = 0, not_finite = 0;
 };
 
 Extent extent_of(const VoxelSource& source, Work work) {
@@ -35,7 +35,10 @@ Extent extent_of(const VoxelSource& source, Work work) {
   source.visit_all([&](const VoxelBatch& batch) {
     work.poll();
     for (const Vec3d p : batch.places) {
-      if (!is_finite(p)) continue;
+      if (!is_finite(p)) {
+        ++extent.not_finite;
+        continue;
+      }
       ++extent.count;
       extent.lo = min(extent.lo, p);
       extent.hi = max(extent.hi, p);
@@ -70,7 +73,10 @@ Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Wor
       options.voxel_size.value_or(grid->voxel_size) == grid->voxel_size)
     return *grid;
   const Extent extent = extent_of(source, work);
-  if (extent.count == 0) throw Error("", "", "has no points, so it has no bounds");
+  if (extent.count == 0)
+    throw Error("", "",
+                extent.not_finite > 0 ? "has only points that are not finite, so it has no bounds"
+                                      : "has no points, so it has no bounds");
   if (options.levels) {
     Box3d bounds{extent.lo, extent.hi};
     // One point has a grid of voxels of size 1, as a mesh of one point has.
