@@ -24,7 +24,7 @@ struct TooMany {};
 
 /// Returns the origins of the first parts of leaves, and reads the leaves' attributes.
 std::vector<Vec3i> first_parts(const EsvoView& view) {
-  constexpr std::size_t kMost = 500;  // a small file can represent 2^60 voxels
+  constexpr std::size_t kMax = 500;  // a small file can represent 2^60 voxels
   std::vector<Vec3i> blocks;
   try {
     for_each_leaf_part(view, whole_grid(view.levels),
@@ -34,7 +34,7 @@ std::vector<Vec3i> first_parts(const EsvoView& view) {
                          stored_normal(view, leaf, value);
                          if (mask == 0 || leaf.slot >= view.slot_count) std::abort();
                          blocks.push_back(origin);
-                         if (blocks.size() > kMost) throw TooMany();
+                         if (blocks.size() > kMax) throw TooMany();
                        });
   } catch (const TooMany&) {
   }

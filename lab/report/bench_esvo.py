@@ -11,7 +11,7 @@ from charts import axis, line, panel
 from child import ScratchFolder, cpu_seconds, machine_json, run_child
 from commands import Output, Parser, add_run_options, device, image_sizes, levels, not_negative, refuse, whole
 from document import Error
-from esvo import FORMS, Silhouettes, cast_seconds, levels_saved, rate
+from esvo_runs import FORMS, Silhouettes, cast_seconds, levels_saved, rate
 from scenes import ESVO, label_of, match_scene, prepare_mesh
 from text import NAN, human_bytes, human_count, number, with_commas
 

@@ -16,10 +16,12 @@ from charts import draw_charts
 from child import ProgressLine, ScratchFolder, machine_json, run_child
 from commands import Parser, add_run_options, device, image_size, level, levels, memory, one_of, seconds, whole
 from document import Error, Paragraph, Section, html_of, markdown_of
-from esvo import EsvoResults, esvo_chapter, esvo_charts, esvo_items
+from esvo import esvo_chapter, esvo_charts
+from esvo_runs import EsvoResults, esvo_items
 from pictures import Lab
 from scenes import ESVO, PAPER_SCENES, SVDAG, FoundScene, SceneFinder, scene_of
-from svdag import SvdagResults, svdag_chapter, svdag_charts, svdag_items
+from svdag import svdag_chapter, svdag_charts
+from svdag_runs import SvdagResults, svdag_items
 from text import human_duration
 
 

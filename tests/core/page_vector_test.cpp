@@ -52,8 +52,8 @@ TEST(LargeArray, KeepsItsValuesAtAnySize) {
 }
 
 TEST(LargeArray, RefusesSizesThatNoMachineHas) {
-  constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
-  for (const std::size_t count : {kMost, kMost / 2, kMost / 4})
+  constexpr std::size_t kMax = std::numeric_limits<std::size_t>::max();
+  for (const std::size_t count : {kMax, kMax / 2, kMax / 4})
     EXPECT_THROW(make_large_array<std::uint32_t>(count), std::bad_alloc);
 }
 

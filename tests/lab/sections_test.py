@@ -6,8 +6,10 @@ import unittest
 import report_path  # noqa: F401
 
 import esvo
+import esvo_runs
 import flight
 import svdag
+import svdag_runs
 from cells import Cell, Result, Run
 from document import markdown_of
 from flight import FlightRun
@@ -35,7 +37,7 @@ def lucy(state):
         "dag_nodes": 1_500_000, "svo_nodes": 20_000_000, "voxels": 80_000_000, "bytes": {"svdag_paper": 4 << 20},
         "bits_per_voxel": {"svdag_paper": 0.42, "svo_pointerless": 2}, "dag_nodes_per_level": [1, 8, 20],
         "svo_nodes_per_level": [1, 8, 60]}))
-    return found(SVDAG, "Lucy", state), {**{name: [] for name in svdag.SERIES}, "dags": [build]}
+    return found(SVDAG, "Lucy", state), {**{name: [] for name in svdag_runs.SERIES}, "dags": [build]}
 
 
 class Svdag(unittest.TestCase):
@@ -106,7 +108,7 @@ class Flight(unittest.TestCase):
 
 def sibenik(state):
     """Returns Sibenik in this state, with octrees of 13 and 14 levels; the paper's has 14."""
-    runs = esvo.SceneRuns(found(ESVO, "Sibenik", state))
+    runs = esvo_runs.SceneRuns(found(ESVO, "Sibenik", state))
     rates = {form: {"mrays_per_s": rate, "cpu_mrays_per_s": None}
              for form, rate in (("triangles", 40), ("cubes", 25), ("contours", 50), ("contours_beams", 55))}
     rays = {"width": 1024, "height": 768, "ray_count": 1_000_000, "picture_seconds": 0.05, "filter_seconds": 0.002, **rates}
@@ -157,8 +159,8 @@ class Esvo(unittest.TestCase):
 
     def test_levels_are_saved_beside_cubes_of_the_same_grid_and_finer_ones(self):
         def saved(row, *values):
-            rows = [esvo.Silhouettes(10 + i, *both) for i, both in enumerate(values)]
-            levels, is_least = esvo.levels_saved(rows, rows[row])
+            rows = [esvo_runs.Silhouettes(10 + i, *both) for i, both in enumerate(values)]
+            levels, is_least = esvo_runs.levels_saved(rows, rows[row])
             return round(levels, 9), is_least
         usual = (8e-4, 1e-4), (4e-4, 5e-5), (2e-4, 2e-5), (1e-4, 1e-5)
         self.assertEqual([saved(row, *usual) for row in (0, 1, 3)], [(3, False), (2, True), (0, True)])

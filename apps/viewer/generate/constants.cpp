@@ -178,7 +178,7 @@ Json all_constants() {
       {"LIGHT", light_constants()},
       {"EXPOSURE",
        {VOXDAG_CONSTANT(ExposureRule, kMiddle), VOXDAG_CONSTANT(ExposureRule, kBright),
-        VOXDAG_CONSTANT(ExposureRule, kWhite), VOXDAG_CONSTANT(ExposureRule, kLeast),
+        VOXDAG_CONSTANT(ExposureRule, kWhite), VOXDAG_CONSTANT(ExposureRule, kMin),
         VOXDAG_CONSTANT(ExposureRule, kOfNothing), VOXDAG_CONSTANT(ExposureRule, kLuminance)}},
       {"TONE",
        {VOXDAG_CONSTANT(ToneCurve, kA), VOXDAG_CONSTANT(ToneCurve, kB),

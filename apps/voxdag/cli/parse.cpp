@@ -122,19 +122,19 @@ double parse_positive(const std::string& text) {
 }
 
 int parse_levels(const std::string& text) {
-  constexpr std::uint64_t kLeast = 1u << kMinLevels, kMost = 1u << kMaxLevels;
+  constexpr std::uint64_t kMin = 1u << kMinLevels, kMax = 1u << kMaxLevels;
   const bool kilo = text.ends_with('K') || text.ends_with('k');
   std::uint64_t n = parse_number<std::uint64_t>(
       std::string_view(text).substr(0, text.size() - (kilo ? 1 : 0)), "a whole number");
-  if (kilo) n = n <= kMost ? n * 1024 : kMost + 1;
-  if (n < kLeast || n > kMost)
+  if (kilo) n = n <= kMax ? n * 1024 : kMax + 1;
+  if (n < kMin || n > kMax)
     throw std::invalid_argument(
-        fmt::format("{} is not a power of two from {} to {}; the nearest is {}", text, kLeast,
-                    kMost, n < kLeast ? kLeast : kMost));
+        fmt::format("{} is not a power of two from {} to {}; the nearest is {}", text, kMin,
+                    kMax, n < kMin ? kMin : kMax));
   if (!std::has_single_bit(n))
     throw std::invalid_argument(
         fmt::format("{} is not a power of two from {} to {}; the nearest are {} and {}", text,
-                    kLeast, kMost, std::bit_floor(n), std::bit_ceil(n)));
+                    kMin, kMax, std::bit_floor(n), std::bit_ceil(n)));
   return std::countr_zero(n);
 }
 

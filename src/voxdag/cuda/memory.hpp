@@ -25,8 +25,8 @@ void copy_to_host(void* host, const void* device, std::uint64_t bytes);
 /// Returns the bytes of an array, or the largest std::uint64_t if the product overflows.
 template <class T>
 constexpr std::uint64_t array_bytes(std::uint64_t count) {
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
-  return count > kMost / sizeof(T) ? kMost : count * sizeof(T);
+  constexpr std::uint64_t kMax = std::numeric_limits<std::uint64_t>::max();
+  return count > kMax / sizeof(T) ? kMax : count * sizeof(T);
 }
 
 /// Owns an array of uninitialised values, which `Free` frees.

@@ -9,7 +9,7 @@
 namespace voxdag {
 namespace {
 
-constexpr double kLeast = ExposureRule::kLeast;
+constexpr double kMin = ExposureRule::kMin;
 
 /// The surfaces in a run of pixels. Sums over runs of a fixed length do not depend on the number of
 /// threads.
@@ -25,7 +25,7 @@ PixelRun measure(std::span<const Vec3f> radiance, std::span<const float> depth) 
     if (!std::isfinite(depth[i])) continue;
     const float luminance = dot(radiance[i], ExposureRule::kLuminance);
     run.luminances.push_back(luminance);
-    run.sum_of_logs += std::log(std::max(static_cast<double>(luminance), kLeast));
+    run.sum_of_logs += std::log(std::max(static_cast<double>(luminance), kMin));
   }
   return run;
 }
@@ -52,7 +52,7 @@ float automatic_exposure(std::span<const Vec3f> radiance, std::span<const float>
       luminances.begin() +
       static_cast<std::ptrdiff_t>(ExposureRule::kBright * static_cast<double>(luminances.size()));
   std::nth_element(luminances.begin(), bright, luminances.end());
-  const double white = std::max(static_cast<double>(*bright), kLeast);
+  const double white = std::max(static_cast<double>(*bright), kMin);
   return static_cast<float>(std::min(ExposureRule::kMiddle / mean, ExposureRule::kWhite / white));
 }
 

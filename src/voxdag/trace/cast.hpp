@@ -104,9 +104,9 @@ VOXDAG_HD inline Hit to_hit(const GridRay& ray, const CellHit& cell, int levels,
   hit.level = static_cast<std::int8_t>(cell.level);
   hit.face = entered_face(ray, cell);
   const float t = static_cast<float>(ray.to_world_t(static_cast<double>(cell.t)));
-  constexpr float kMost = 0x1.fffffep127f;
+  constexpr float kMax = 0x1.fffffep127f;
   hit.t = t < t_min ? t_min : t > t_max ? t_max : t;
-  if (hit.t > kMost) hit.t = kMost;
+  if (hit.t > kMax) hit.t = kMax;
 
   const std::uint32_t corner[3] = {cell.x, cell.y, cell.z};
   const std::int32_t cell_size = 1 << (levels - cell.level);

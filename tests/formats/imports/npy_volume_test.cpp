@@ -258,9 +258,9 @@ TEST(ValueTest, ThresholdsOfIntegersAreExact) {
   const std::int64_t big = std::int64_t{1} << 53;
   EXPECT_FALSE(IsAtLeast<std::int64_t>(9007199254740994.0)(big + 1));
   EXPECT_TRUE(IsAtLeast<std::int64_t>(9007199254740994.0)(big + 2));
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
-  EXPECT_FALSE(IsAtLeast<std::uint64_t>(18446744073709551616.0)(kMost));
-  EXPECT_TRUE(IsAtLeast<std::uint64_t>(18446744073709549568.0)(kMost));
+  constexpr std::uint64_t kMax = std::numeric_limits<std::uint64_t>::max();
+  EXPECT_FALSE(IsAtLeast<std::uint64_t>(18446744073709551616.0)(kMax));
+  EXPECT_TRUE(IsAtLeast<std::uint64_t>(18446744073709549568.0)(kMax));
   EXPECT_TRUE(IsAtLeast<std::int64_t>(-1e300)(std::numeric_limits<std::int64_t>::min()));
   EXPECT_TRUE(IsAtLeast<std::int8_t>(-128)(-128));
   EXPECT_FALSE(IsAtLeast<std::uint8_t>(255.5)(255));

@@ -14,11 +14,11 @@ export function automaticExposure(pixels, samples) {
     if (pixels[i + 3] < 0.5 * samples) continue;
     const luminance = (red * pixels[i] + green * pixels[i + 1] + blue * pixels[i + 2]) / samples;
     luminances.push(luminance);
-    sum += Math.log(Math.max(luminance, EXPOSURE.least));
+    sum += Math.log(Math.max(luminance, EXPOSURE.min));
   }
   if (luminances.length === 0) return EXPOSURE.ofNothing;
   luminances.sort((a, b) => a - b);
   const mean = Math.exp(sum / luminances.length);
-  const white = Math.max(luminances[Math.min(luminances.length - 1, Math.floor(EXPOSURE.bright * luminances.length))], EXPOSURE.least);
+  const white = Math.max(luminances[Math.min(luminances.length - 1, Math.floor(EXPOSURE.bright * luminances.length))], EXPOSURE.min);
   return Math.min(EXPOSURE.middle / mean, EXPOSURE.white / white);
 }

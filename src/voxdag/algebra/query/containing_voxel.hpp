@@ -12,9 +12,9 @@ inline Vec3i containing_voxel(const Grid& grid, Vec3d world) {
   const Vec3d point = (world - grid.origin) * (1 / grid.voxel_size);
   Vec3i voxel;
   for (int axis = 0; axis < 3; ++axis) {
-    constexpr double kMost = 2147483647;
+    constexpr double kMax = 2147483647;
     const double at = std::floor(point[axis]);
-    voxel[axis] = static_cast<std::int32_t>(at >= -kMost ? std::min(at, kMost) : -kMost);
+    voxel[axis] = static_cast<std::int32_t>(at >= -kMax ? std::min(at, kMax) : -kMax);
   }
   return voxel;
 }

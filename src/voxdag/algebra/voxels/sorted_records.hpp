@@ -136,9 +136,9 @@ void SortedRecords<Record, kRepeats>::visit_all(const Visit& visit) {
   // The buffers of the readers take the place of the records in memory.
   if (!records_.empty()) write_run();
   records_.release();
-  constexpr std::size_t kLeast = 4096 / sizeof(Record),
-                        kMost = (std::size_t{1} << 18) / sizeof(Record);
-  const std::size_t buffer = std::clamp(capacity_ / runs_.size(), kLeast, kMost);
+  constexpr std::size_t kMin = 4096 / sizeof(Record),
+                        kMax = (std::size_t{1} << 18) / sizeof(Record);
+  const std::size_t buffer = std::clamp(capacity_ / runs_.size(), kMin, kMax);
   const MemoryReservation buffers(work_.memory, runs_.size() * buffer * sizeof(Record));
   std::vector<RunReader> readers;
   readers.reserve(runs_.size());

@@ -61,13 +61,13 @@ class BeamPacketWalk : PacketLanes {
   /// lowest <= high and t * highest >= low. The sign of `lowest` or `highest` decides whether the
   /// inequality gives the t at which the beam enters or the t at which it leaves.
   void prepare(int axis) {
-    constexpr double kLeast = 1e-30;
+    constexpr double kMin = 1e-30;
     const double* const lowest = packet_.lowest[axis];
     const double* const highest = packet_.highest[axis];
     bool is_up = true, is_down = true;
     for (std::size_t i = 0; i < packet_.size; ++i) {
-      is_up = is_up && lowest[i] > kLeast;
-      is_down = is_down && highest[i] < -kLeast;
+      is_up = is_up && lowest[i] > kMin;
+      is_down = is_down && highest[i] < -kMin;
     }
     ways_[axis] = is_up ? Way::kUp : is_down ? Way::kDown : Way::kEither;
     order_ |= is_down ? 1u << axis : 0u;
@@ -75,8 +75,8 @@ class BeamPacketWalk : PacketLanes {
       const std::size_t beam = i < packet_.size ? i : packet_.size - 1;
       double low = lowest[beam], high = highest[beam];
       if (ways_[axis] == Way::kEither) {
-        low = low < -kLeast ? low : -kLeast;
-        high = high > kLeast ? high : kLeast;
+        low = low < -kMin ? low : -kMin;
+        high = high > kMin ? high : kMin;
       }
       const auto by_low = static_cast<float>(1 / low), by_high = static_cast<float>(1 / high);
       enter_[axis][i] = (is_up ? by_high : by_low) * (1 - kRounding);

@@ -6,19 +6,19 @@
 
 namespace voxdag {
 
-/// Keeps the first kMost warnings and counts the rest.
+/// Keeps the first kMax warnings and counts the rest.
 class Warnings {
  public:
-  static constexpr std::size_t kMost = 200;
+  static constexpr std::size_t kMax = 200;
 
   void add(std::string warning) {
-    if (kept_.size() < kMost)
+    if (kept_.size() < kMax)
       kept_.push_back(std::move(warning));
     else
       ++left_out_;
   }
-  /// Returns whether kMost warnings are kept, so that add() only counts.
-  bool is_full() const { return kept_.size() >= kMost; }
+  /// Returns whether kMax warnings are kept, so that add() only counts.
+  bool is_full() const { return kept_.size() >= kMax; }
 
   /// Returns the warnings. If some were left out, the last one says how many.
   std::vector<std::string> take(const std::string& file) {

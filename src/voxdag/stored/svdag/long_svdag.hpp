@@ -67,8 +67,8 @@ inline std::uint32_t allowed_mask_bits(const LongSvdagView&, std::uint32_t child
 
 /// Returns whether the pointers of a layout can address all words and leaf blocks.
 inline bool fits_pointers(const SvdagView& dag) {
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
-  return dag.node_words() <= kMost && dag.leaf_block_count <= kMost;
+  constexpr std::uint64_t kMax = std::uint64_t{1} << 32;
+  return dag.node_words() <= kMax && dag.leaf_block_count <= kMax;
 }
 inline bool fits_pointers(const LongSvdagView& dag) {
   for (int level = 0; level < dag.levels - 2; ++level)

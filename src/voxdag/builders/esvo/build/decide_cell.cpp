@@ -33,9 +33,9 @@ ContourCandidates contour_candidates(const Cell& cell) {
 }
 
 bool CellDecider::is_too_thin(const Cell& cell, const ConvexPolyhedron& shape) {
-  constexpr std::size_t kMost = 6;       // with more pieces, such a shape is unlikely
+  constexpr std::size_t kMax = 6;       // with more pieces, such a shape is unlikely
   constexpr double kRounding = 0x1p-10;  // larger than the rounding errors of cutting shapes
-  if (cell.pieces.size() > kMost) return false;
+  if (cell.pieces.size() > kMax) return false;
   const auto is_thin = [&](const ContourDirection& across) {
     return 2 * extent_of(shape, across.normal).size() <
            (FittedContour::kMinGain - kRounding) * static_cast<double>(across.length);

@@ -32,7 +32,7 @@ void ContourCandidates::add(const ContourDirection& direction, double weight) {
     weights_[i] += weight;
     return;
   }
-  if (count_ < kMost) {
+  if (count_ < kMax) {
     directions_[count_] = direction;
     weights_[count_++] = weight;
     return;
@@ -82,7 +82,7 @@ ContourExtents extents_by_groups(std::span<const PlanarPolygon> surface,
 ContourExtents extents_of(std::span<const PlanarPolygon> surface,
                           const ContourCandidates& candidates) {
   const std::span<const ContourDirection> directions = candidates.directions();
-  static_assert(ContourCandidates::kMost == 2 * kLanes);
+  static_assert(ContourCandidates::kMax == 2 * kLanes);
   return directions.size() <= kLanes ? extents_by_groups<1>(surface, directions)
                                      : extents_by_groups<2>(surface, directions);
 }

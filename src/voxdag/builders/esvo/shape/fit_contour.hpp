@@ -20,7 +20,7 @@ namespace voxdag {
 /// A few candidate directions that are not similar to each other.
 class ContourCandidates {
  public:
-  static constexpr int kMost = 8;
+  static constexpr int kMax = 8;
 
   /// Adds a direction. If a similar one (or its opposite) exists, adds to its weight instead. If
   /// the set is full, replaces the direction of least weight.
@@ -30,8 +30,8 @@ class ContourCandidates {
 
  private:
   std::size_t count_ = 0;
-  std::array<ContourDirection, kMost> directions_;
-  std::array<double, kMost> weights_;
+  std::array<ContourDirection, kMax> directions_;
+  std::array<double, kMax> weights_;
 };
 
 struct FittedContour {
@@ -50,7 +50,7 @@ struct FittedContour {
 Interval extent_of(const ConvexPolyhedron& shape, Vec3i normal);
 
 /// The least and the greatest dot(normal, p) of a surface's points p, for each candidate direction.
-using ContourExtents = std::array<Interval, ContourCandidates::kMost>;
+using ContourExtents = std::array<Interval, ContourCandidates::kMax>;
 
 /// Returns the extents of a surface of at least one polygon.
 ContourExtents extents_of(std::span<const PlanarPolygon> surface,

@@ -24,9 +24,9 @@ class RunWriter {
     count_ += count;
   }
   void flush() {
-    constexpr std::uint64_t kMost = 255;
+    constexpr std::uint64_t kMax = 255;
     while (count_ > 0) {
-      const std::uint64_t count = std::min(count_, kMost);
+      const std::uint64_t count = std::min(count_, kMax);
       const unsigned char pair[] = {value_ ? std::uint8_t{1} : std::uint8_t{0},
                                     static_cast<unsigned char>(count)};
       file_.write(pair, sizeof pair);

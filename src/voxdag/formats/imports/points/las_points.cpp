@@ -106,8 +106,8 @@ class HeaderParser {
     for (int axis = 0; axis < 3; ++axis) {
       const std::size_t step = sizeof(double) * static_cast<std::size_t>(axis);
       const auto scale = load<double>(kScale + step), offset = load<double>(kOffset + step);
-      constexpr double kMost = 2147483648.0;  // The greatest size of an integer of a record.
-      if (scale == 0 || !std::isfinite(std::fabs(scale) * kMost + std::fabs(offset)))
+      constexpr double kMax = 2147483648.0;  // The greatest size of an integer of a record.
+      if (scale == 0 || !std::isfinite(std::fabs(scale) * kMax + std::fabs(offset)))
         fail(kScale + step, "scale and offset do not give finite coordinates");
       header_.scale[axis] = scale;
       header_.offset[axis] = offset;

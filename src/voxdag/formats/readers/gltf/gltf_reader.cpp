@@ -81,11 +81,11 @@ class GltfReader {
     }
     if (triangles == 0)
       throw source_.error("the scene has no triangles: there is no surface to read");
-    constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-    if (vertices >= kMost)
+    constexpr std::uint64_t kMax = std::numeric_limits<std::uint32_t>::max();
+    if (vertices >= kMax)
       throw source_.error(std::to_string(vertices) +
                           " vertices are too many: at most 4,294,967,294 are read");
-    if (3 * triangles > kMost)
+    if (3 * triangles > kMax)
       throw source_.error(std::to_string(triangles) +
                           " triangles are too many: at most 1,431,655,765 are read");
     const GltfItems& materials = file_.array(GltfArray::kMaterials);
