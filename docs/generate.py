@@ -35,7 +35,7 @@ refused and writes nothing.
     "Render and view": """After reading this page you can render pictures and films, and show a DAG in the browser.""",
     "Trace and query": """After reading this page you can cast rays at a file, and ask questions about the voxels of a DAG.
 [arrays.md](../arrays.md) has the types and shapes of the arrays, and [json.md](../json.md) has the keys of `--json`.""",
-    "Benchmark": """After reading this page you can list the benchmarks; `voxdag bench NAME --help` prints the options of one.
+    "Benchmark": """After reading this page you can list the benchmarks. `voxdag bench NAME --help` prints the options of one.
 [lab/README.md](../../lab/README.md) says how to measure with them, and what their tables and JSON mean.""",
     "Shell": """After reading this page you can complete command lines of voxdag with the Tab key.""",
 }

@@ -3,11 +3,11 @@
 
   scripts/compile_cost.py [--limit NAME] BUILD_FOLDER [ninja's option...]
 
-prints the processor seconds of the build, and those of each target as far as Ninja's log tells them.
-With --limit it compares a build from scratch with a reference, a source that uses the standard library
-only, compiled on the same machine right after: it fails if the build costs a third more references than
-compile_cost.json says under NAME. Whoever makes the build that much dearer, for a reason, changes the
-number there. An incremental build is not compared.
+prints the processor seconds of the build, and the wall-clock seconds of each target from Ninja's log.
+With --limit it compares a build from scratch with a reference: a source that uses the standard library
+only, compiled on the same machine right after. It fails if the build costs a third more references than
+compile_cost.json says under NAME. Change that number if the build has a reason to cost more. The script
+does not compare incremental builds.
 """
 import argparse
 import collections

@@ -56,7 +56,7 @@ cmake --preset release -DVOXDAG_WERROR=ON -DVOXDAG_PYTHON=ON "${options[@]}" >/d
 if [ "$extended" = yes ]; then
   cmake --build --preset release -- -j "$jobs"
 else
-  # Fails if compiling costs a third more than it did.
+  # Fails if compiling costs a third more than scripts/compile_cost.json says.
   scripts/compile_cost.py --limit ordinary build/release -j "$jobs"
 fi
 

@@ -31,7 +31,7 @@ struct ImportArguments {
 
 /// Throws Error for options that the kind of file does not have, or needs.
 void check_grid_options(const VoxelSource& source, const ImportOptions& options) {
-  const bool has_place = options.voxel_size || options.origin;
+  const bool sets_place = options.voxel_size || options.origin;
   if (source.has_points()) {
     if (!options.levels && !options.voxel_size && !source.grid())
       throw Error("", "", "holds points, which need -r or --voxel-size");
@@ -41,7 +41,7 @@ void check_grid_options(const VoxelSource& source, const ImportOptions& options)
       throw Error("", "", "holds points; --origin goes with --voxel-size, and not with --bounds");
   } else if (options.bounds) {
     throw Error("", "", "holds voxels; --bounds is for points");
-  } else if (has_place && source.has_place()) {
+  } else if (sets_place && source.has_place()) {
     throw Error("", "",
                 "says itself where its voxels lie: --voxel-size and --origin are for files that do "
                 "not");

@@ -129,12 +129,12 @@ int parse_levels(const std::string& text) {
   if (kilo) n = n <= kMax ? n * 1024 : kMax + 1;
   if (n < kMin || n > kMax)
     throw std::invalid_argument(
-        fmt::format("{} is not a power of two from {} to {}; the nearest is {}", text, kMin,
-                    kMax, n < kMin ? kMin : kMax));
+        fmt::format("{} is not a power of two from {} to {}; the nearest is {}", text, kMin, kMax,
+                    n < kMin ? kMin : kMax));
   if (!std::has_single_bit(n))
     throw std::invalid_argument(
-        fmt::format("{} is not a power of two from {} to {}; the nearest are {} and {}", text,
-                    kMin, kMax, std::bit_floor(n), std::bit_ceil(n)));
+        fmt::format("{} is not a power of two from {} to {}; the nearest are {} and {}", text, kMin,
+                    kMax, std::bit_floor(n), std::bit_ceil(n)));
   return std::countr_zero(n);
 }
 

@@ -11,7 +11,7 @@ struct ExposureRule {
   static constexpr double kMiddle = 0.3;     ///< The geometric mean of the surfaces' brightness.
   static constexpr double kBright = 0.95;    ///< This part of the surfaces may not become white.
   static constexpr double kWhite = 1.1;      ///< The brightness from which a surface is white.
-  static constexpr double kMin = 1e-6;     ///< Darker pixels count as this bright in the mean.
+  static constexpr double kMin = 1e-6;       ///< Darker pixels count as this bright in the mean.
   static constexpr float kOfNothing = 0.5f;  ///< The factor of a picture without surfaces.
   static constexpr Vec3f kLuminance{0.2126f, 0.7152f, 0.0722f};  ///< Brightness of R, G and B.
 };

@@ -188,7 +188,7 @@ TEST_F(NiftiFiles, OtherFilesAreRefused) {
   EXPECT_EQ(error_with(good), "no error");
   EXPECT_TRUE(has(error_with(good, 7), "truncated: the volume needs 8 bytes after byte 352"));
   EXPECT_EQ(error_with(good, 9), "no error");
-  EXPECT_TRUE(has(open("v.nii")->warnings().at(0), "1 bytes behind the volume are left out"));
+  EXPECT_TRUE(has(open("v.nii")->warnings().at(0), "bytes after the volume are left out: 1"));
   Nifti bad = good;
   bad.dim[0] = 8;
   EXPECT_TRUE(has(error_with(bad), "has 8 axes; 1 to 7 are allowed"));

@@ -5,8 +5,8 @@
 
 #include "random_volume.hpp"
 #include "support/brute_svdag.hpp"
+#include "voxdag/formats/imports/value_type.hpp"
 #include "voxdag/formats/imports/volumes/value_test.hpp"
-#include "voxdag/formats/imports/volumes/value_type.hpp"
 
 namespace voxdag {
 namespace {
@@ -189,7 +189,7 @@ TEST_F(NpyVolume, RowsMayHaveAnyTypeAndOrder) {
   check("f8", double{});
   write("a.npy",
         npy("<i8", false, "1, 3", rows_of<std::int64_t>({{1, 2, 3}}, false, false) + "more"));
-  EXPECT_TRUE(has(open("a.npy")->warnings().at(0), "4 bytes behind the array are left out"));
+  EXPECT_TRUE(has(open("a.npy")->warnings().at(0), "bytes after the array are left out: 4"));
   // Numbers beyond the largest grid, and below 0.
   const auto far = [&](std::int64_t number) {
     std::string row;
@@ -235,7 +235,7 @@ TEST_F(NpyVolume, OtherArraysAreRefused) {
   EXPECT_TRUE(has(error("", "1, 1, 2"), "not ''"));
   EXPECT_TRUE(has(error("<f4", "1, 1, 3"), "truncated: the volume needs 12 bytes"));
   EXPECT_EQ(error("<f4", "1, 1, 1"), "no error");
-  EXPECT_TRUE(has(open("a.npy")->warnings().at(0), "4 bytes behind the volume are left out"));
+  EXPECT_TRUE(has(open("a.npy")->warnings().at(0), "bytes after the volume are left out: 4"));
   EXPECT_TRUE(has(error("<f4", "0, 1, 1"), "a side of the volume has 0 voxels"));
   EXPECT_TRUE(has(error("|u1", "1048577, 1, 1"), "has 1048577 voxels; 1 to 1048576"));
   EXPECT_TRUE(has(error("<f8", "1048576, 1048576, 1048576"), "more than 2^63 bytes"));

@@ -204,7 +204,7 @@ TEST_F(Nrrd, OtherHeadersAreRefused) {
   EXPECT_TRUE(has(header_error(type + raw + three + "sizes: 1000000 1000000 1000000"),
                   "truncated: the volume needs 1000000000000000000 bytes"));
   EXPECT_EQ(header_error(type + raw + three + "sizes: 2 2 1"), "no error");
-  EXPECT_TRUE(has(open("v.nrrd")->warnings().at(0), "4 bytes behind the volume are left out"));
+  EXPECT_TRUE(has(open("v.nrrd")->warnings().at(0), "bytes after the volume are left out: 4"));
   EXPECT_EQ(header_error(good + "sizes: 2 2 2"), "no error");
   EXPECT_TRUE(has(header_error(good + "sizes: 2 2 1"), "the field 'sizes' is there twice"));
   EXPECT_TRUE(has(header_error(good + "spacings: 1 0 1"), "between 1e-30 and 1e30, not 0"));

@@ -129,7 +129,7 @@ Grid grid_from_bounds(const Box3d& bounds, double voxel_size) {
   require_voxel_size(voxel_size);
   const double side = bounds.is_empty() ? 0 : longest_side(bounds);
   if (!(side > 0) || !std::isfinite(side)) throw Error("the bounds must have a positive size");
-  // Decimal numbers are rounded: 204.8 - 0.1 voxels of 0.1 are 2047, not a little more.
+  // Rounding must not add a voxel: 0.7 - 0.1 divided by 0.1 is 6 but for the last digits.
   const double voxels = side / voxel_size, whole = std::round(voxels);
   double greatest = 0;
   for (int axis = 0; axis < 3; ++axis)

@@ -1,5 +1,5 @@
 #pragma once
-/// What long work counts its memory in, reports to and is cancelled by.
+/// Carries a memory budget, progress and cancellation through long operations.
 #include <cstdint>
 #include <string_view>
 

@@ -52,8 +52,8 @@ struct ArrayLayout {
   std::string dtype;
   /// The axes of a dense array, from the slowest to the fastest; empty for others.
   std::string axes;
-  /// What the file calls voxel window.lo; without it (0, 0, 0) in a dense array, window.lo in
-  /// others.
+  /// The coordinates that the file gives voxel window.lo. Default: (0, 0, 0) in a dense array,
+  /// window.lo in other files.
   std::optional<Vec3i> lo_in_file = {};
 };
 

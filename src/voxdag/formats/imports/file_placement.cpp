@@ -18,7 +18,7 @@ namespace {
 struct FilePlacement {
   Grid grid;
   Box3i window;                      ///< Of the grid's voxels.
-  Vec3i lo_in_file;                  ///< What the file calls voxel window.lo.
+  Vec3i lo_in_file;                  ///< The coordinates of voxel window.lo in the file.
   std::array<int, 3> axes{0, 1, 2};  ///< The grid's axes of x, y and z in the file.
 };
 
@@ -115,7 +115,7 @@ std::unique_ptr<VoxelSource> with_file_placement(const std::filesystem::path& pa
   constexpr SizeLimit kMaxBytes{std::uint64_t{1} << 20, "a placement"};
   const MappedFile file(beside, MappedFile::Access::kSequential, kMaxBytes);
   const auto json = nlohmann::json::parse(file.text(), nullptr, /*allow_exceptions=*/false);
-  // Other programs name files so, too.
+  // Files of other programs may have this name.
   if (!json.is_object() || !json.contains("placement") || !json.contains("grid")) return source;
   try {
     const FilePlacement placement = parse_placement(json, is_folder);

@@ -1,5 +1,5 @@
 #pragma once
-/// The places that voxdag's exports write beside their files.
+/// Reads the placements that voxdag's exports write beside their files.
 #include <memory>
 
 #include "voxdag/formats/imports/voxel_source.hpp"

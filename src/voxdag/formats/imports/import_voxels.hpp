@@ -16,7 +16,7 @@ struct ImportOptions {
   std::optional<Vec3d> origin;       ///< Lower corner of the grid, for the same.
   std::optional<Box3d> bounds;       ///< For points: what the grid holds.
   bool colors = true;                ///< Stores the colours of files that have some.
-  /// AttributeOptions::color_bound. Without it 0.05, or 0 for sources with a palette.
+  /// AttributeOptions::color_bound. Default: 0.05; 0 for sources with a palette.
   std::optional<double> color_bound;
   std::filesystem::path folder;  ///< Of files for sorting.
 };
@@ -32,7 +32,7 @@ struct ImportResult {
   Grid grid;
   std::uint64_t read = 0;        ///< Points or voxels in the file.
   std::uint64_t outside = 0;     ///< Points outside of the bounds, which are left out.
-  std::uint64_t not_finite = 0;  ///< Points with a coordinate that is no number: left out, too.
+  std::uint64_t not_finite = 0;  ///< Points with NaN or infinite coordinates, which are left out.
 };
 
 /// Sets the voxel of each point (see PointLocator), or each voxel. Points need exactly one of

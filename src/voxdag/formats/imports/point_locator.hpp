@@ -11,8 +11,8 @@
 
 namespace voxdag {
 
-/// How far the coordinates of points may be from the numbers that were meant: 0.3 is no binary
-/// number, and 0.3f is another one than 0.3.
+/// Bounds the error of coordinates: doubles and floats round the decimal numbers that people mean,
+/// such as 0.3.
 struct CoordinateError {
   double relative = 0x1p-53;  ///< Of a coordinate: half a unit in its last place.
   Vec3d absolute{};           ///< In addition, in world units.

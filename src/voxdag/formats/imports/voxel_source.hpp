@@ -1,5 +1,6 @@
 #pragma once
 /// Files of voxels and of points, read as a stream.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -18,9 +19,14 @@ namespace voxdag {
 
 using Rgb8 = std::array<std::uint8_t, 3>;  ///< Red, green and blue, sRGB encoded.
 
+/// Returns a component of 0 to 1 in 8 bits. Clamps others; NaN becomes 0.
+inline std::uint8_t color_byte(double component) {
+  return static_cast<std::uint8_t>(component > 0 ? std::min(component, 1.0) * 255 + 0.5 : 0);
+}
+
 /// Some of the points or voxels of a source.
 struct VoxelBatch {
-  /// Points in world units, perhaps some that are not finite, or voxels as whole numbers.
+  /// Points in world units, which may be NaN or infinite, or voxels as whole numbers.
   std::span<const Vec3d> places;
   std::span<const Rgb8> colors;  ///< One for each place; empty if the source has no colours.
 };
@@ -36,15 +42,15 @@ class VoxelSource {
   virtual bool has_colors() const { return false; }
   /// Returns how exact the coordinates of points are.
   virtual CoordinateError coordinate_error() const { return {}; }
-  /// Returns whether the colours are those of a palette, as artists choose it: they are kept
-  /// without loss by default, and of several colours of a voxel the last one counts.
+  /// Returns whether the colours come from an artist's palette. The import keeps these without
+  /// loss by default, and gives a voxel the last of several colours.
   virtual bool has_palette() const { return false; }
-  /// Returns the grid of the voxels, if the file has one; of points, the one whose voxels they are
-  /// the centres of.
+  /// Returns the grid that the file names, if it names one. Points are then the centres of its
+  /// voxels.
   virtual std::optional<Grid> grid() const { return std::nullopt; }
   /// Returns whether the file says where its voxels lie, or how large they are.
   virtual bool has_place() const { return false; }
-  /// Returns what the file calls voxel (0, 0, 0) of visit_all().
+  /// Returns the coordinates that the file gives voxel (0, 0, 0) of visit_all().
   virtual Vec3l first_voxel() const { return {}; }
   /// Returns warnings for the user, one line each, without the name of the file.
   virtual std::vector<std::string> warnings() const { return {}; }

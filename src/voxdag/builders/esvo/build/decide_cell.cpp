@@ -33,7 +33,7 @@ ContourCandidates contour_candidates(const Cell& cell) {
 }
 
 bool CellDecider::is_too_thin(const Cell& cell, const ConvexPolyhedron& shape) {
-  constexpr std::size_t kMax = 6;       // with more pieces, such a shape is unlikely
+  constexpr std::size_t kMax = 6;        // with more pieces, such a shape is unlikely
   constexpr double kRounding = 0x1p-10;  // larger than the rounding errors of cutting shapes
   if (cell.pieces.size() > kMax) return false;
   const auto is_thin = [&](const ContourDirection& across) {

@@ -10,13 +10,13 @@
 
 namespace voxdag {
 
-/// The colour of a voxel that has several.
+/// Which colour a voxel gets that has several.
 enum class ColorRule : std::uint8_t { kMean, kLast };
 
 /// A voxel and one of its colours.
 struct ColoredCode {
   std::uint64_t code = 0;
-  std::uint32_t number = 0;  ///< For ColorRule::kLast: of the colours before it; at most 2^32 - 1.
+  std::uint32_t number = 0;  ///< For ColorRule::kLast: its place in the file, at most 2^32 - 1.
   std::uint32_t color = 0;   ///< Red in the lowest byte, then green and blue.
 
   friend auto operator<=>(const ColoredCode&, const ColoredCode&) = default;

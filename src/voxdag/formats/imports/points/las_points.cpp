@@ -1,4 +1,4 @@
-/// Reads LAS files (ASPRS, LAS Specification 1.0 to 1.4).
+/// Reads LAS files (ASPRS, LAS Specification 1.0 to 1.5).
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -33,8 +33,8 @@ constexpr std::size_t kMajorVersion = 24, kMinorVersion = 25, kHeaderBytes = 94,
                       kFormat = 104, kRecordLength = 105, kLegacyPoints = 107, kScale = 131,
                       kOffset = 155, kPoints = 247;
 
-/// The fields up to the bounds; what versions 1.3 to 1.5 add behind them is needed for the count of
-/// 64 bits only. Some writers of 1.3 leave their addition out.
+/// Headers end with the bounds. Versions 1.3 to 1.5 add fields, of which the reader needs the count
+/// of 64 bits only; some writers of 1.3 leave them out.
 constexpr std::uint64_t kMinHeaderBytes = 227, kLongHeaderBytes = 375;
 
 class HeaderParser {
@@ -145,7 +145,7 @@ class LasPoints : public VoxelSource {
 
   bool has_points() const override { return true; }
   bool has_colors() const override { return color_ > 0; }
-  /// The products and sums of add() are rounded.
+  /// Counts the rounding of add(): a product and a sum.
   CoordinateError coordinate_error() const override {
     CoordinateError error{0x1p-51, {}};
     for (int axis = 0; axis < 3; ++axis)

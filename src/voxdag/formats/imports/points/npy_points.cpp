@@ -10,9 +10,9 @@
 #include "voxdag/core/printable.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/npy_type.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
-#include "voxdag/formats/imports/volumes/npy_type.hpp"
 
 namespace voxdag {
 namespace {
@@ -144,7 +144,7 @@ class NpyPoints : public VoxelSource {
           name_, ErrorPlace::byte(size),
           "truncated: " + std::to_string(rows_) + " rows need " + std::to_string(end) + " bytes");
     if (size > end)
-      warnings_.push_back(std::to_string(size - end) + " bytes behind the array are left out");
+      warnings_.push_back("bytes after the array are left out: " + std::to_string(size - end));
   }
 
   bool has_points() const override { return is_real_; }
@@ -220,13 +220,13 @@ class NpyPoints : public VoxelSource {
                            {{"red", "green", "blue"}, {"r", "g", "b"}});
   }
 
-  /// Colours are bytes, 16 bits, or real numbers to 1.
+  /// Finds the range of the colours: 255 of bytes, 65535 of 16 bits, 1 of real numbers.
   void find_color_scale() {
     const ValueType type = colors_[0].type.value;
     if (is_real(type)) {
-      color_scale_ = 255;
+      color_scale_ = 1;
     } else if (type == ValueType::kUint16) {
-      color_scale_ = 255.0 / 65535;
+      color_scale_ = 1.0 / 65535;
     } else if (type != ValueType::kUint8) {
       warnings_.emplace_back(
           "its colours are left out: they are no bytes, 16 bits or real numbers");
@@ -236,10 +236,7 @@ class NpyPoints : public VoxelSource {
 
   Rgb8 color_of(const char* row) const {
     Rgb8 color;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double value = colors_[c].load(row) * color_scale_;
-      color[c] = static_cast<std::uint8_t>(value > 0 ? std::min(value, 255.0) + 0.5 : 0);
-    }
+    for (std::size_t c = 0; c < 3; ++c) color[c] = color_byte(colors_[c].load(row) * color_scale_);
     return color;
   }
 
@@ -252,7 +249,7 @@ class NpyPoints : public VoxelSource {
   bool is_by_columns_ = false;  ///< The order is Fortran's.
   bool is_real_ = false;
   std::vector<Column> places_, colors_;  ///< Three, or no colours.
-  double color_scale_ = 1;               ///< To 255.
+  double color_scale_ = 1.0 / 255;       ///< Maps a component to 0..1.
   std::vector<std::string> warnings_;
 };
 

@@ -237,7 +237,7 @@ class PcdPoints : public VoxelSource {
   PcdHeader header_;
   std::vector<PcdField> used_;   ///< x, y, z and perhaps the colour.
   std::string_view compressed_;  ///< None if no point is compressed.
-  bool is_stored_ = false;       ///< The compressed data are not.
+  bool is_stored_ = false;       ///< The data of a compressed file are as they were.
 };
 
 }  // namespace

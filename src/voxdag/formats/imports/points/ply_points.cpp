@@ -16,11 +16,8 @@ namespace {
 /// Three coordinates, then three components of a colour if the file has them.
 using Values = std::array<double, 6>;
 
-std::uint8_t to_8_bits(double component) {
-  return static_cast<std::uint8_t>(component > 0 ? std::min(component, 1.0) * 255 + 0.5 : 0);
-}
-
-/// The factor of the first spherical harmonic: Gaussian splats have the colour 0.5 + it * f_dc.
+/// The factor of the first spherical harmonic. The colour of a Gaussian splat is
+/// 0.5 + kHarmonic * f_dc.
 constexpr double kHarmonic = 0.28209479177387814;
 
 class PlyPoints : public VoxelSource {
@@ -61,7 +58,7 @@ class PlyPoints : public VoxelSource {
  private:
   const PlyElement& vertex() const { return header_.elements[header_.vertex]; }
 
-  /// Returns the grid of voxdag's own exports: its comments name it.
+  /// Returns the grid that voxdag's own exports name in their comments.
   std::optional<Grid> grid_of_comments() const {
     std::string_view header = source_.bytes.substr(0, header_.body);
     if (header.find("comment made by voxdag") == header.npos) return std::nullopt;
@@ -92,7 +89,7 @@ class PlyPoints : public VoxelSource {
     return vertex().properties[static_cast<std::size_t>(property)].type;
   }
 
-  /// Colours of real numbers go to 1, or to 255 as those of bytes do: then some are 2 or more.
+  /// Finds whether colours of real numbers reach 1 or 255: they reach 255 if one is 2 or more.
   void find_color_range() {
     double greatest = 0;
     for_each_vertex([&](const Values& values) {
@@ -107,7 +104,7 @@ class PlyPoints : public VoxelSource {
     if (!has_colors()) return points.add(point);
     Rgb8 color;
     for (std::size_t c = 0; c < 3; ++c)
-      color[c] = to_8_bits(values[3 + c] * color_scales_[c] + color_offset_);
+      color[c] = color_byte(values[3 + c] * color_scales_[c] + color_offset_);
     points.add(point, color);
   }
 

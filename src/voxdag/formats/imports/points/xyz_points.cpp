@@ -209,12 +209,12 @@ class XyzPoints : public VoxelSource {
     }
     if (fewest >= kValues)
       warnings_.emplace_back(
-          "its columns behind the third are left out: they have no names, and are no colours of "
+          "its columns after the third are left out: they have no names, and are no colours of "
           "whole "
           "numbers from 0 to 255");
   }
 
-  /// Colours go to 1, 255 or 65535: the least of these that the first points do not exceed.
+  /// Finds the range of colours: the least of 1, 255 and 65535 that the first points do not exceed.
   void find_color_range() {
     std::size_t points = 0;
     double greatest = 0;
@@ -231,7 +231,7 @@ class XyzPoints : public VoxelSource {
     color_range_ = greatest > 255 ? 65535 : greatest > 1 || !has_fractions ? 255 : 1;
   }
 
-  /// Returns the number of a line that has nothing else: .pts files count their points.
+  /// Returns the number of points that a line of .pts files announces: its only number.
   static std::optional<std::uint64_t> count_of(std::string_view line) {
     const std::string_view body = trim(line);
     std::int64_t count = 0;
@@ -277,7 +277,7 @@ class XyzPoints : public VoxelSource {
         fail(number, "colour " + std::string(fields_of(line)[columns_[kCoordinates + c]]) +
                          " is not from 0 to " + std::to_string(static_cast<int>(color_range_)) +
                          ", as those of the first points are");
-      color[c] = static_cast<std::uint8_t>(value * 255 / color_range_ + 0.5);
+      color[c] = color_byte(value / color_range_);
     }
     points.add(point, color);
   }

@@ -11,8 +11,8 @@
 #include <string_view>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/formats/imports/value_type.hpp"
 #include "voxdag/formats/imports/volumes/gzip_stream.hpp"
-#include "voxdag/formats/imports/volumes/value_type.hpp"
 
 namespace voxdag {
 namespace {
@@ -133,8 +133,8 @@ class DenseSource : public VoxelSource {
                   "truncated: the volume needs " + std::to_string(needed) + " bytes after byte " +
                       std::to_string(file_.begin) + ", the file has " + std::to_string(size));
     if (size > needed && !file_.may_have_more)
-      file_.warnings.push_back(std::to_string(size - needed) +
-                               " bytes behind the volume are left out");
+      file_.warnings.push_back("bytes after the volume are left out: " +
+                               std::to_string(size - needed));
   }
 
   /// Calls read(fill), where fill() gives the bytes of the volume. If it returns true, it read all

@@ -32,8 +32,8 @@ struct DenseFile {
 };
 
 /// Returns the source of the file's volume. Throws Error if the file is shorter than raw data must
-/// be, and visit_all() if other data end early, are damaged, or do not end where they should. Bytes
-/// behind raw data are left out with a warning.
+/// be, and visit_all() if other data end early, are damaged, or do not end where they should.
+/// Leaves out bytes after raw data, with a warning.
 std::unique_ptr<VoxelSource> make_dense_source(DenseFile file);
 
 }  // namespace voxdag

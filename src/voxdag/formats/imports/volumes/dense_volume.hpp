@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "voxdag/formats/imports/volumes/value_type.hpp"
+#include "voxdag/formats/imports/value_type.hpp"
 #include "voxdag/formats/imports/voxel_source.hpp"
 
 namespace voxdag {
@@ -21,17 +21,18 @@ struct DenseVolume {
   ValueType type = ValueType::kUint8;
   bool is_big_endian = false;
   bool is_z_fastest = false;  ///< The order is z, y, x; otherwise x, y, z.
-  /// 1: values. 3 or 4: red, green, blue and alpha of type kUint8, next to each other; of a list,
-  /// the values of its layers, next to each other.
+  /// Numbers of a voxel, next to each other. 1: a value. 3 or 4: red, green, blue and alpha of type
+  /// kUint8. Any number if is_list: a value in each layer.
   int channels = 1;
-  bool is_list = false;  ///< A voxel is set if it is set in any layer.
-  int repeats = 1;       ///< Volumes of this size behind each other; those of a list are layers.
+  bool is_list = false;  ///< The volume has layers. A voxel is set if any layer sets it.
+  int repeats = 1;       ///< Layers of a list that follow each other as whole volumes.
   static constexpr std::uint64_t kMaxLayers = 4096;
   double slope = 1, intercept = 0;  ///< A value is slope * number + intercept.
   /// Values that are at least this set their voxel; without it, all values but 0. NaN sets none.
-  /// Of a colour with alpha the value is alpha, of one without the greatest channel.
+  /// The threshold is compared with the alpha of a colour, or with the greatest channel if the
+  /// colour has no alpha.
   std::optional<double> threshold;
-  bool has_opaque_alpha = false;  ///< Alpha is 255 everywhere, so it is no value.
+  bool has_opaque_alpha = false;  ///< Alpha is 255 everywhere: the greatest channel counts.
 
   bool has_colors() const { return channels > 1 && !is_list; }
   std::uint64_t voxel_bytes() const {
@@ -51,7 +52,8 @@ int levels_of(const VolumeSize& size);
 /// Fills the span with the next bytes of a stream, or throws Error.
 using FillBytes = std::function<void(std::span<std::byte>)>;
 
-/// Returns whether all colours of a volume with alpha have the alpha 255. Reads until one has not.
+/// Returns whether the alpha of a volume of RGBA is 255 everywhere. Stops reading at one that is
+/// not.
 bool has_opaque_alpha(const DenseVolume& volume, const FillBytes& fill);
 
 /// Calls visit() for the voxels that are set, in the order of the stream, with their colours if the

@@ -4,9 +4,9 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/printable.hpp"
 #include "voxdag/file/npy.hpp"
+#include "voxdag/formats/imports/npy_type.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/imports/volumes/dense_source.hpp"
-#include "voxdag/formats/imports/volumes/npy_type.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
 
 namespace voxdag {

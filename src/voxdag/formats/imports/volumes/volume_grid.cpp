@@ -56,8 +56,8 @@ void check_placement(const std::filesystem::path& path, const Vec3d& spacing,
 
 }  // namespace
 
-double VolumeMap::Axis::first_cube(double counted) const {
-  return std::ceil(counted * cubes_per_voxel - 0.5);
+double VolumeMap::Axis::first_cube(double count) const {
+  return std::ceil(count * cubes_per_voxel - 0.5);
 }
 
 VolumeMap::VolumeMap(const std::filesystem::path& path, const VolumeSize& size,

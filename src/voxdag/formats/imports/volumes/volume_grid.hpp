@@ -15,8 +15,8 @@ struct VolumePlacement {
   /// From the centre of a voxel to that of the next one, along x, y and z of the volume.
   std::array<Vec3d, 3> steps{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
   std::optional<Vec3d> first_centre;  ///< Of voxel (0, 0, 0); without it, its corner is at 0.
-  bool is_curved = false;             ///< The steps are not the same everywhere.
-  bool is_known = false;              ///< The file says something about it.
+  bool is_curved = false;             ///< The steps change from place to place.
+  bool is_known = false;              ///< The header names a place or a spacing.
 };
 
 /// Maps the voxels of a volume to those of a grid, which are cubes along the axes of the world.
@@ -38,14 +38,14 @@ class VolumeMap {
   void visit_cubes(const VoxelBatch& voxels, const VisitBatch& visit) const;
 
  private:
-  /// What becomes of an axis of the volume.
+  /// An axis of the volume, and the axis of the world along which it lies.
   struct Axis {
     int world = 0;
     bool is_mirrored = false;
     double voxels = 0, cubes_per_voxel = 1;
 
-    /// Returns the first cube whose centre does not lie before the voxels that are counted.
-    double first_cube(double counted) const;
+    /// Returns the index of the first cube after `count` voxels: its centre lies behind them.
+    double first_cube(double count) const;
   };
 
   Grid grid_;

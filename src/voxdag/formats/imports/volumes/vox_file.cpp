@@ -146,16 +146,16 @@ class VoxParser {
     cursor_.bytes(content);
     VoxCursor chunks = cursor_.part(children);
     if (cursor_.left() > 0)
-      file_.warnings.push_back(std::to_string(cursor_.left()) +
-                               " bytes behind the MAIN chunk are left out");
+      file_.warnings.push_back("bytes after the MAIN chunk are left out: " +
+                               std::to_string(cursor_.left()));
     while (chunks.left() > 0) parse_chunk(chunks);
     if (size_) chunks.fail("a SIZE chunk has no XYZI chunk");
     if (declared_models_ && *declared_models_ > file_.models.size())
       chunks.fail("has " + std::to_string(file_.models.size()) +
                   " models, but the PACK chunk says " + std::to_string(*declared_models_));
     if (outside_ > 0)
-      file_.warnings.push_back(std::to_string(outside_) +
-                               " voxels lie outside of their models and are left out");
+      file_.warnings.push_back("voxels outside of their models are left out: " +
+                               std::to_string(outside_));
     return std::move(file_);
   }
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "voxdag/formats/imports/volumes/value_type.hpp"
+#include "voxdag/formats/imports/value_type.hpp"
 
 namespace voxdag {
 
