@@ -109,6 +109,33 @@ TEST(ObjReader, RefusalsNameTheLineAndTheReason) {
             "mesh: OBJ in UTF-16: save it as ASCII or UTF-8");
 }
 
+TEST(ObjReader, ValuesAndFacesMayAlternateOften) {
+  // Beyond ObjChunk::kMaxRuns the passes no longer skip each other's lines.
+  for (const int groups : {1, 3, 400, 3'000}) {
+    std::string text = "f 1 2 3\n";
+    StoredVector<Vec3f> vertices;
+    StoredVector<Triangle> triangles{{0, 1, 2}};
+    for (int g = 0; g < groups; ++g) {
+      const std::uint32_t first = 3 * static_cast<std::uint32_t>(g);
+      const auto x = static_cast<float>(g);
+      text += "# a group\nusemtl m" + std::to_string(g % 5) + "\n";
+      for (const Vec3f v : {Vec3f{x, 0, 0}, Vec3f{x, 1, 0}, Vec3f{x, 0, 1}}) {
+        vertices.push_back(v);
+        text += "v " + std::to_string(g) + (v.y > 0 ? " 1" : " 0") + (v.z > 0 ? " 1" : " 0") + "\n";
+        text += "  vt 0 0\n";
+      }
+      text += "vn 0 0 1\ns off\nf -3/-1 -2/-2 -1/-3\nf 1 -1 -2\n";
+      triangles.push_back({first, first + 1, first + 2});
+      triangles.push_back({0, first + 2, first + 1});
+    }
+    const Mesh mesh = read_text(read_obj, text);
+    EXPECT_EQ(mesh.vertices, vertices) << groups;
+    EXPECT_EQ(mesh.triangles, triangles) << groups;
+    for (std::size_t t = 1; t < triangles.size(); ++t)
+      EXPECT_EQ(mesh.materials[mesh.triangle_materials[t]], "m" + std::to_string((t - 1) / 2 % 5));
+  }
+}
+
 TEST(ObjReader, AnyPrefixIsSafe) {
   expect_any_prefix_is_safe(read_obj,
                             "# c\nmtllib a.mtl\nv 0 0 0 \\\n 1\r\nv 1e0 0 0\nv 0 -1.5 0\n"

@@ -57,28 +57,48 @@ ObjFile::ObjFile(const MeshSource& source, std::size_t chunk_bytes)
 ObjChunk ObjFile::count(std::string_view chunk, ReadParts parts) const {
   ObjChunk counted(source_.work().memory);
   CancelPoll poll(source_.work());
-  for_each_statement(chunk, [&](ObjStatement statement, std::string_view line, const char*) {
-    counted.counts.add_value(statement);
-    switch (statement) {
-      case ObjStatement::kVertex:
-        if (parts == ReadParts::kMeshAndAppearance && !counted.has_colors)
-          counted.has_colors = has_six_numbers(line);
-        break;
-      case ObjStatement::kFace:
-        counted.counts.triangles += count_triangles(line, poll);
-        counted.has_faces = true;
-        counted.has_faces_before_material |= counted.materials.empty();
-        break;
-      case ObjStatement::kMaterial:
-        counted.last_material = counted.materials.find_or_add(trim(line));
-        break;
-      case ObjStatement::kLibrary:
-        counted.libraries.find_or_add(trim(line));
-        break;
-      default:
-        break;
-    }
-  });
+  const auto end_run = [&](const char* at) {
+    if (counted.runs.empty()) return;
+    std::string_view& text = counted.runs.back().text;
+    text = {text.data(), static_cast<std::size_t>(at - text.data())};
+  };
+  bool has_few_runs = true;
+  const auto add_to_run = [&](bool is_value, const char* position) {
+    if (!has_few_runs || (!counted.runs.empty() && counted.runs.back().has_values == is_value))
+      return;
+    end_run(position);
+    has_few_runs = counted.runs.size() < ObjChunk::kMaxRuns;
+    counted.runs.push_back({{position, 0}, is_value, counted.counts});
+  };
+  for_each_statement(
+      chunk, [&](ObjStatement statement, std::string_view line, const char* position) {
+        if (is_value(statement))
+          add_to_run(true, position);
+        else if (statement == ObjStatement::kFace || statement == ObjStatement::kMaterial)
+          add_to_run(false, position);
+        counted.counts.add_value(statement);
+        switch (statement) {
+          case ObjStatement::kVertex:
+            if (parts == ReadParts::kMeshAndAppearance && !counted.has_colors)
+              counted.has_colors = has_six_numbers(line);
+            break;
+          case ObjStatement::kFace:
+            counted.counts.triangles += count_triangles(line, poll);
+            counted.has_faces = true;
+            counted.has_faces_before_material |= counted.materials.empty();
+            break;
+          case ObjStatement::kMaterial:
+            counted.last_material = counted.materials.find_or_add(trim(line));
+            break;
+          case ObjStatement::kLibrary:
+            counted.libraries.find_or_add(trim(line));
+            break;
+          default:
+            break;
+        }
+      });
+  end_run(chunk.data() + chunk.size());
+  if (!has_few_runs) counted.runs.clear();
   return counted;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/formats/readers/face_writer.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
 #include "voxdag/formats/readers/name_table.hpp"
@@ -37,6 +38,9 @@ inline ObjStatement take_keyword(std::string_view& line) {
   return ObjStatement::kOther;
 }
 
+/// Returns whether a statement defines a vertex, texture coordinate or normal.
+inline bool is_value(ObjStatement statement) { return statement <= ObjStatement::kNormal; }
+
 struct ObjCounts {
   std::size_t vertices = 0, uvs = 0, normals = 0, triangles = 0;
 
@@ -47,6 +51,10 @@ struct ObjCounts {
     triangles += other.triangles;
     return *this;
   }
+  /// Returns these counts with the values of others added, and the same triangles.
+  ObjCounts with_values(const ObjCounts& more) const {
+    return {vertices + more.vertices, uvs + more.uvs, normals + more.normals, triangles};
+  }
   /// Counts the value that a statement defines, if it defines one.
   void add_value(ObjStatement statement) {
     vertices += statement == ObjStatement::kVertex;
@@ -55,15 +63,26 @@ struct ObjCounts {
   }
 };
 
+/// Neighbouring lines of a chunk without values (`v`, `vt`, `vn`), or without faces and materials.
+struct ObjRun {
+  std::string_view text;
+  bool has_values = true;
+  ObjCounts before;  ///< The values that precede the run in its chunk.
+};
+
 /// The contents of a chunk.
 struct ObjChunk {
-  explicit ObjChunk(MemoryBudget* memory) : materials(memory), libraries(memory) {}
+  explicit ObjChunk(MemoryBudget* memory) : materials(memory), libraries(memory), runs(memory) {}
 
   ObjCounts counts;
   NameTable materials, libraries;   ///< Arguments of `usemtl` and `mtllib`.
   std::uint32_t last_material = 0;  ///< Index into `materials` of the last `usemtl`.
   bool has_faces = false, has_faces_before_material = false;
-  bool has_colors = false;  ///< Some vertex has six numbers.
+  bool has_colors = false;     ///< Some vertex has six numbers.
+  CountedVector<ObjRun> runs;  ///< In order. None if there would be more than kMaxRuns.
+
+  /// A chunk whose values and faces alternate more often is read as a whole.
+  static constexpr std::size_t kMaxRuns = 1024;
 };
 
 /// An OBJ file in chunks. All functions throw Fault at malformed lines, OverMemory and Cancelled.

@@ -1,5 +1,6 @@
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -16,6 +17,7 @@ constexpr std::uint32_t kNoMaterial = std::numeric_limits<std::uint32_t>::max();
 /// A chunk's place in the mesh.
 struct PlacedChunk {
   std::string_view text;
+  CountedVector<ObjRun> runs;            ///< At least one.
   ObjCounts counts, first;               ///< Its contents; the contents of all chunks before.
   std::uint32_t material = kNoMaterial;  ///< The material at the start of the chunk.
   bool has_faces = false;
@@ -60,11 +62,16 @@ class ObjReader {
     std::uint32_t material = kNoMaterial;
     bool has_colors = false;
     for (std::size_t c = 0; c < counted.size(); ++c) {
-      const ObjChunk& chunk = *counted[c];
+      ObjChunk& chunk = *counted[c];
       has_colors = has_colors || chunk.has_colors;
       if (material == kNoMaterial && chunk.has_faces_before_material)
         material = material_ids_.find_or_add("");  // The material of faces before any usemtl.
-      chunks_.push_back({texts_[c], chunk.counts, totals_, material, chunk.has_faces});
+      const bool is_whole = chunk.runs.empty();
+      chunks_.push_back(
+          {texts_[c], std::move(chunk.runs), chunk.counts, totals_, material, chunk.has_faces});
+      if (is_whole)
+        for (const bool has_values : {true, false})
+          chunks_.back().runs.push_back({texts_[c], has_values, {}});
       totals_ += chunk.counts;
       for (std::size_t i = 0; i < chunk.materials.size(); ++i)
         material_ids_.find_or_add(chunk.materials[i]);
@@ -121,7 +128,16 @@ class ObjReader {
     const std::size_t attribute_values = attributes_ ? counts.uvs + counts.normals : 0;
     if (counts.vertices + attribute_values == 0) return;
     const auto vertices = std::span(mesh_.vertices).subspan(chunk.first.vertices, counts.vertices);
-    chunk.has_bad_vertex = !file_.read_vertices(chunk.text, vertices, chunk.first, attributes());
+    for (auto run = chunk.runs.begin(); run != chunk.runs.end(); ++run) {
+      if (!run->has_values) continue;
+      const auto next = std::find_if(run + 1, chunk.runs.end(),
+                                     [](const ObjRun& other) { return other.has_values; });
+      const std::size_t begin = run->before.vertices,
+                        end = next == chunk.runs.end() ? counts.vertices : next->before.vertices;
+      chunk.has_bad_vertex |=
+          !file_.read_vertices(run->text, vertices.subspan(begin, end - begin),
+                               chunk.first.with_values(run->before), attributes());
+    }
   }
 
   void read_faces(const PlacedChunk& chunk, const AllVertices& vertices) {
@@ -131,16 +147,22 @@ class ObjReader {
     ObjFaces faces(source_, vertices, triangles, attributes());
     ObjCounts seen = chunk.first;
     std::uint32_t material = chunk.material;
-    file_.for_each_statement(
-        chunk.text, [&](ObjStatement statement, std::string_view line, const char* position) {
-          seen.add_value(statement);
-          if (statement == ObjStatement::kMaterial) material = *material_ids_.find(trim(line));
-          if (statement != ObjStatement::kFace) return;
-          const std::size_t count = faces.read(line, position, seen);
-          if (!mesh_.triangle_materials.empty())
-            std::fill_n(mesh_.triangle_materials.data() + seen.triangles, count, material);
-          seen.triangles += count;
-        });
+    for (const ObjRun& run : chunk.runs) {
+      if (run.has_values) continue;
+      const std::size_t triangle = seen.triangles;
+      seen = chunk.first.with_values(run.before);
+      seen.triangles = triangle;
+      file_.for_each_statement(
+          run.text, [&](ObjStatement statement, std::string_view line, const char* position) {
+            seen.add_value(statement);
+            if (statement == ObjStatement::kMaterial) material = *material_ids_.find(trim(line));
+            if (statement != ObjStatement::kFace) return;
+            const std::size_t count = faces.read(line, position, seen);
+            if (!mesh_.triangle_materials.empty())
+              std::fill_n(mesh_.triangle_materials.data() + seen.triangles, count, material);
+            seen.triangles += count;
+          });
+    }
     faces.check_full();
   }
 
