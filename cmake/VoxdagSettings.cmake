@@ -23,6 +23,8 @@ add_library(voxdag_settings INTERFACE)
 target_compile_options(voxdag_settings INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -ffp-contract=off -fno-math-errno -fno-trapping-math>)
+# Highway compiles hot loops for SSE2, SSE4, AVX2 and AVX-512; almost all processors with SSSE3 have SSE4, too.
+target_compile_definitions(voxdag_settings INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
 if(VOXDAG_WERROR)
   target_compile_options(voxdag_settings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
 endif()

@@ -2,19 +2,21 @@
 # Builds voxdag with warnings as errors and tests it, on a Debian 12 that has only git.
 #
 #   scripts/test.sh             formatting, the build under g++, the tests of what a change can break
-#   scripts/test.sh --extended  also the library under clang, a Debug build, voxdag-lab, OpenVDB, CUDA's
-#                               code on the host, browsers, programs of others, jobs that are killed
+#   scripts/test.sh --debug     also a Debug build of the library, with the tests of what writes files
+#   scripts/test.sh --extended  also --debug, the library under clang, voxdag-lab, OpenVDB, CUDA's code on
+#                               the host, browsers, programs of others, jobs that are killed
 #   scripts/test.sh --tidy      also builds each source by itself under clang, runs clang-tidy and looks
 #                               for types that are defined twice
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
 
-usage() { sed -n '2,9s/^# \{0,1\}//p' "$0"; }
-extended=no tidy=no
+usage() { sed -n '2,10s/^# \{0,1\}//p' "$0"; }
+extended=no debug=no tidy=no
 for argument in "$@"; do
   case "$argument" in
-    --extended) extended=yes ;;
+    --debug) debug=yes ;;
+    --extended) extended=yes debug=yes ;;
     --tidy) tidy=yes ;;
     -h | --help) usage; exit 0 ;;
     *) usage >&2; exit 2 ;;
@@ -95,14 +97,15 @@ run_tests() {
     exit 1
   }
 }
-if [ "$extended" = yes ]; then
+if [ "$debug" = yes ]; then
   echo "== tests of a Debug build"
   cmake --preset debug -DVOXDAG_WERROR=ON -DVOXDAG_CUDA=OFF >/dev/null
   cmake --build --preset debug --target library_tests -- -j "$jobs"
   run_tests debug -R "^(svdag|esvo|attributes|compact|wire|file|model|algebra|io|parallel|core)\."
-  echo "== tests"
+fi
+echo "== tests"
+if [ "$extended" = yes ]; then
   run_tests release
 else
-  echo "== tests"
   run_tests release -LE extended
 fi
