@@ -26,6 +26,8 @@ def main():
         os.execv("/usr/bin/python3", ["/usr/bin/python3", *sys.argv])
     from child import Program
     from document import Error
+    # If one rank fails, mpirun ends the others; only the first says that it was cancelled.
+    is_first = os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0")) == "0"
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _cancel)
     try:
@@ -39,7 +41,8 @@ def main():
         print(f"voxdag: {error.filename or 'standard output'}: {error.strerror}", file=sys.stderr)
         return 1
     except Cancelled as cancelled:
-        print("voxdag: cancelled", file=sys.stderr)
+        if is_first:
+            print("voxdag: cancelled", file=sys.stderr)
         return 128 + cancelled.args[0]
     return 0
 

@@ -82,14 +82,15 @@ class CellStore:
 
     A rank runs a cell only while `is_mine` is set; else it waits until another rank has run it."""
 
-    def __init__(self, folder, directory, program, at_once=1, progress=None):
-        self.folder, self.directory, self.program, self.at_once = folder, directory, program, at_once
+    def __init__(self, folder, directory, program, at_once=1, progress=None, rank=0):
+        self.folder, self.directory, self.program, self.at_once, self.rank = folder, directory, program, at_once, rank
         self.progress = progress
         self.is_mine = True
         self.check_others = lambda: None  # called while this rank waits; may raise Error
         self.contents = {}  # by input: its checksum, or the key of the cell that writes it
         self.writers = {}  # cells, by output
         self.used, self.ran = set(), set()  # keys
+        self.rank_of = {}  # by key: the rank that ran the command
         os.makedirs(folder, exist_ok=True)
         self.kept_before = {name[:-5] for name in os.listdir(folder) if name.endswith(".json")}
         machine = machine_json()
@@ -99,6 +100,10 @@ class CellStore:
     def measured(self):
         """The number of commands that were run for this report, also by other ranks."""
         return len(self.used - self.kept_before | self.ran)
+
+    def measured_by(self, rank):
+        """The number of those commands that a rank ran."""
+        return sum(self.rank_of[key] == rank for key in self.used - self.kept_before | self.ran)
 
     @property
     def kept(self):
@@ -124,6 +129,7 @@ class CellStore:
             with open(self._file_of(key), encoding="utf-8") as file:
                 kept = json.load(file)
             if kept["output_check"] == self._output_check(cell):
+                self.rank_of[key] = kept["rank"]
                 return Result(kept["failure"], kept["result"], kept["cost"])
         except (OSError, ValueError, KeyError, TypeError):
             pass
@@ -146,10 +152,11 @@ class CellStore:
             return result
         self._make_inputs(cell)
         self.ran.add(key)
+        self.rank_of[key] = self.rank
         result = self._measure(cell)
         write_whole(self._file_of(key), json_text({
             "command": cell.command(), "program": self.program.name, "machine": machine_json(),
-            "at_once": self.at_once, "cost": result.cost, "failure": result.failure,
+            "at_once": self.at_once, "rank": self.rank, "cost": result.cost, "failure": result.failure,
             "output_check": self._output_check(cell), "result": result.json}))
         return result
 

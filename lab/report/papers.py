@@ -9,6 +9,7 @@ import json
 import os
 import re
 import sys
+import time
 from dataclasses import dataclass, field
 
 from cells import CellStore, json_text, write_whole
@@ -188,10 +189,13 @@ def bench_papers(plan, program, sharing, progress):
     try:
         os.makedirs(plan.folder, exist_ok=True)
     except OSError as error:
+        if sharing.rank > 0:
+            time.sleep(60)  # rank 0 has the same error: it says so, and mpirun then ends this rank
         raise Error(f"{plan.folder}: cannot make the folder: {error.strerror}") from error
     with ScratchFolder() as made, ScratchFolder(plan.folder) as scratch:
         find_device(plan, program, made.path)
-        cells = CellStore(os.path.join(plan.folder, "cells"), scratch.path, program, sharing.on_a_machine, progress)
+        cells = CellStore(os.path.join(plan.folder, "cells"), scratch.path, program, sharing.on_a_machine, progress,
+                          sharing.rank)
         with RankFile(sharing, cells, plan.device_name):
             cells.is_mine = sharing.rank == 0
             finder = SceneFinder(plan, made.path, cells, program)
@@ -222,7 +226,9 @@ def write_report(plan, program, sharing, cells, svdag, esvo):
         "svdag": svdag.json(), "esvo": esvo.json()}))
     write_whole(files["md"], markdown_of(title, sections))
     write_whole(files["html"], html_of(title, sections, plan.folder))
-    return (f"{files['html']}: {cells.measured} measured{f' by {sharing.ranks} processes' if sharing.ranks > 1 else ''}, "
+    counts = " + ".join(str(cells.measured_by(rank)) for rank in range(sharing.ranks))
+    by = f" by {sharing.ranks} processes ({counts})" if sharing.ranks > 1 else ""
+    return (f"{files['html']}: {cells.measured} measured{by}, "
             f"{cells.kept} kept from earlier runs{'' if is_drawn else '; no charts, because matplotlib is not installed'}")
 
 
