@@ -84,8 +84,7 @@ class FileBytes final : public SceneBytes {
   void check_all() {
     // The parser needs bytes that are aligned to 8.
     std::vector<std::uint64_t> words((size() + 7) / 8);
-    const std::span<std::byte> bytes =
-        std::as_writable_bytes(std::span(words)).first(static_cast<std::size_t>(size()));
+    const std::span<std::byte> bytes = std::as_writable_bytes(std::span(words)).first(size());
     errno = 0;
     if (!read_all(0, bytes))
       throw Error("", "",

@@ -153,7 +153,7 @@ std::string write_distances(const QueryArguments& arguments, const DagModel& fil
   for (float& distance : distances)
     distance = static_cast<float>(static_cast<double>(distance) * file.grid().voxel_size);
   NpyWriter writer(arguments.output, "<f4", {size[1], size[0]}, sizeof(float), size[2]);
-  writer.write_rows(distances.data(), static_cast<std::size_t>(size[2]));
+  writer.write_rows(distances.data(), size[2]);
   writer.commit();
   return fmt::format("{} x {} x {} distances", size[0], size[1], size[2]);
 }

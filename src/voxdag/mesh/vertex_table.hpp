@@ -63,7 +63,7 @@ class VertexTable {
     return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
   }
   std::size_t hash_slot(Vec3f position) const {
-    return static_cast<std::size_t>((hash_bits(position, seed()) >> 32) * slots_.size() >> 32);
+    return (hash_bits(position, seed()) >> 32) * slots_.size() >> 32;
   }
   static std::uint64_t seed() {
     static const std::uint64_t value =

@@ -56,7 +56,7 @@ OpenInput open_input(const std::filesystem::path& path, InputKind kind, SizeLimi
 std::string read_input(const std::filesystem::path& path, SizeLimit limit, InputKind kind) {
   const OpenInput input = open_input(path, kind, limit);
   // One byte beyond the size, so that the last read sees the end of the file.
-  std::string bytes(static_cast<std::size_t>(input.size.value_or(0)) + 1, '\0');
+  std::string bytes(input.size.value_or(0) + 1, '\0');
   for (std::size_t size = 0;;) {
     if (size == bytes.size())
       bytes.resize(size + std::min<std::uint64_t>(kReadBytes, limit.bytes - size + 1));

@@ -29,7 +29,7 @@ struct PositionHash {
     std::uint64_t h = 0;
     for (int axis = 0; axis < 3; ++axis)  // + 0 turns -0 into 0, so that their hashes are equal.
       h = (h ^ std::bit_cast<std::uint32_t>(p[axis] + 0.0f)) * 0x9E3779B97F4A7C15ull, h ^= h >> 31;
-    return static_cast<std::size_t>(h);
+    return h;
   }
 };
 

@@ -23,7 +23,7 @@ struct CornerHash {
     for (const float f : {corner.position.x, corner.position.y, corner.position.z, corner.normal.x,
                           corner.normal.y, corner.normal.z, corner.uv.x, corner.uv.y})
       h = (h ^ std::bit_cast<std::uint32_t>(f + 0.0f)) * 0x9E3779B97F4A7C15ull, h ^= h >> 29;
-    return static_cast<std::size_t>(h);
+    return h;
   }
 };
 

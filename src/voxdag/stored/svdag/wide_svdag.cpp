@@ -105,7 +105,7 @@ class WideMaker {
       here[static_cast<std::size_t>(node - (dag_.nodes + dag_.level_begin[level]))] = put(wide);
     });
     below_ = std::move(here);
-    wide_.root = static_cast<std::uint32_t>(below_.empty() ? 0 : below_[0]);
+    wide_.root = below_.empty() ? 0 : below_[0];
   }
 
   void put_root_of_odd_levels() {
