@@ -7,23 +7,30 @@
 #include "voxdag/formats/readers/off/off_reader.hpp"
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 #include "voxdag/formats/readers/stl/stl_reader.hpp"
+#include "voxdag/formats/readers/used_vertices.hpp"
 
 namespace voxdag {
 
-/// Reads with the reader that `choice` names; its highest bit asks for the appearance.
-inline MeshWithAppearance read_chosen_mesh(std::uint8_t choice, const MeshSource& source) {
+/// Reads with the reader that `choice` names, and removes triangles as read_mesh() does. The
+/// highest bit asks for the appearance, the second highest for an origin.
+inline MeshWithAppearance read_chosen_mesh(std::uint8_t choice, MeshSource source) {
+  if ((choice & 64) != 0) source.origin = {1e6, 0, -0.1};
+  const auto finish = [&](MeshWithAppearance read) {
+    remove_bad_triangles(source, used_vertices(source, read.mesh).bad_triangles, read);
+    return read;
+  };
   const ReadParts parts = choice >= 128 ? ReadParts::kMeshAndAppearance : ReadParts::kMesh;
   switch (choice % 5) {
     case 0:
-      return read_obj(source, parts);
+      return finish(read_obj(source, parts));
     case 1:
-      return read_ply(source, parts);
+      return finish(read_ply(source, parts));
     case 2:
-      return read_gltf(source, parts);
+      return finish(read_gltf(source, parts));
     case 3:
-      return {read_stl(source), {}, {}};
+      return finish(read_stl(source, parts));
     default:
-      return {read_off(source), {}, {}};
+      return finish(read_off(source, parts));
   }
 }
 

@@ -31,8 +31,7 @@ struct MeshInGrid {
   std::size_t vertexCount(std::size_t) const { return 3; }
   void getIndexSpacePoint(std::size_t triangle, std::size_t corner,
                           openvdb::Vec3d& position) const {
-    const voxdag::Vec3f v = mesh.vertices[mesh.triangles[triangle][corner]];
-    const voxdag::Vec3d p = grid.to_grid({double{v.x}, double{v.y}, double{v.z}});
+    const voxdag::Vec3d p = grid.to_grid(mesh.position(mesh.triangles[triangle][corner]));
     // OpenVDB's voxels have their centres at whole numbers, ours have their lower corners there.
     position = {p.x - 0.5, p.y - 0.5, p.z - 0.5};
   }

@@ -5,6 +5,7 @@
 #include "arrays.hpp"
 #include "dag.hpp"
 #include "run_work.hpp"
+#include "voxdag/core/float_origin.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
 
@@ -13,10 +14,20 @@ namespace py = pybind11;
 namespace voxdag::python {
 namespace {
 
+/// Returns the place from which the origins of rays are measured, because rays are in float32.
+Vec3d near(const Dag& dag) { return float_origin(dag.grid().bounds()); }
+
+std::vector<Vec3f> points_of(const Dag& dag, const Array<double>& array, const char* name) {
+  const Vec3d origin = near(dag);
+  std::vector<Vec3f> points;
+  for (const Vec3d p : rows_of(array, name)) points.push_back(static_cast<Vec3f>(p - origin));
+  return points;
+}
+
 /// Returns the rays of two arrays of shape (N, 3), or of one row and N.
-std::vector<Ray> rays_of(const Array<float>& origins, const Array<float>& directions, float t_min,
-                         float t_max) {
-  const std::vector<Vec3f> from = rows_of(origins, "origins");
+std::vector<Ray> rays_of(const Dag& dag, const Array<double>& origins,
+                         const Array<float>& directions, float t_min, float t_max) {
+  const std::vector<Vec3f> from = points_of(dag, origins, "origins");
   const std::vector<Vec3f> along = rows_of(directions, "directions");
   const std::size_t count = std::max(from.size(), along.size());
   if ((from.size() != count && from.size() != 1) || (along.size() != count && along.size() != 1))
@@ -30,14 +41,16 @@ std::vector<Ray> rays_of(const Array<float>& origins, const Array<float>& direct
 std::vector<Hit> cast_all(const Dag& dag, const std::vector<Ray>& rays) {
   return run_work([&](Work work) {
     std::vector<Hit> hits(rays.size());
-    trace_batch(dag.scene(), dag.grid(), rays, hits, work);
+    Grid grid = dag.grid();
+    grid.origin = grid.origin - near(dag);
+    trace_batch(dag.scene(), grid, rays, hits, work);
     return hits;
   });
 }
 
-py::dict cast(const Dag& dag, const Array<float>& origins, const Array<float>& directions,
+py::dict cast(const Dag& dag, const Array<double>& origins, const Array<float>& directions,
               float t_min, float t_max) {
-  const std::vector<Hit> hits = cast_all(dag, rays_of(origins, directions, t_min, t_max));
+  const std::vector<Hit> hits = cast_all(dag, rays_of(dag, origins, directions, t_min, t_max));
   std::vector<float> t(hits.size());
   std::vector<Vec3i> voxels(hits.size(), Vec3i{-1, -1, -1});
   std::vector<std::int8_t> faces(hits.size(), -1);
@@ -59,9 +72,10 @@ py::dict cast(const Dag& dag, const Array<float>& origins, const Array<float>& d
   return result;
 }
 
-py::array_t<bool> occluded(const Dag& dag, const Array<float>& origins,
-                           const Array<float>& targets) {
-  const std::vector<Vec3f> from = rows_of(origins, "origins"), to = rows_of(targets, "targets");
+py::array_t<bool> occluded(const Dag& dag, const Array<double>& origins,
+                           const Array<double>& targets) {
+  const std::vector<Vec3f> from = points_of(dag, origins, "origins"),
+                           to = points_of(dag, targets, "targets");
   if (from.size() != to.size() && from.size() != 1 && to.size() != 1)
     throw py::value_error("origins and targets must have as many rows as each other, or one");
   std::vector<Ray> rays(std::max(from.size(), to.size()));

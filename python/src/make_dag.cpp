@@ -12,10 +12,12 @@
 #include "voxdag/builders/solid/solid_settings.hpp"
 #include "voxdag/builders/voxelize/grid_request.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/float_origin.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/formats/imports/import_model.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/mesh/mesh_bounds.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
 
 namespace py = pybind11;
@@ -75,11 +77,12 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
 }
 
 /// Returns a mesh with the colours of its vertices, if there are some.
-MeshWithAppearance mesh_of(const Array<float>& vertices, const Array<std::int64_t>& faces,
+MeshWithAppearance mesh_of(const Array<double>& vertices, const Array<std::int64_t>& faces,
                            const std::optional<Array<std::uint8_t>>& colors) {
   MeshWithAppearance source;
-  const std::vector<Vec3f> points = rows_of(vertices, "vertices");
-  source.mesh.vertices.assign(points.begin(), points.end());
+  const std::vector<Vec3d> points = rows_of(vertices, "vertices");
+  source.mesh.vertices.reserve(points.size());
+  for (const Vec3d p : points) source.mesh.vertices.push_back(static_cast<Vec3f>(p));
   const auto count = static_cast<std::int64_t>(source.mesh.vertices.size());
   for (const Vec3<std::int64_t> face : rows_of(faces, "faces")) {
     for (int i = 0; i < 3; ++i) {
@@ -94,6 +97,9 @@ MeshWithAppearance mesh_of(const Array<float>& vertices, const Array<std::int64_
                                      static_cast<std::uint32_t>(face.y),
                                      static_cast<std::uint32_t>(face.z)});
   }
+  source.mesh.origin = float_origin(referenced_bounds(source.mesh));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    source.mesh.vertices[i] = static_cast<Vec3f>(points[i] - source.mesh.origin);
   source.appearance.materials.resize(1);
   if (!colors) return source;
   const std::vector<Vec3<std::uint8_t>> values = rows_of(*colors, "colors");
@@ -110,7 +116,7 @@ MeshWithAppearance mesh_of(const Array<float>& vertices, const Array<std::int64_
   return source;
 }
 
-DagPointer build(const Array<float>& vertices, const Array<std::int64_t>& faces,
+DagPointer build(const Array<double>& vertices, const Array<std::int64_t>& faces,
                  std::optional<std::int64_t> resolution, std::optional<double> pitch,
                  std::optional<Bounds> bounds, const py::object& solid,
                  const std::optional<Array<std::uint8_t>>& colors) {

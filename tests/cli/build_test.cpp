@@ -42,6 +42,41 @@ TEST_F(Build, SummaryIsATableOnStandardOutput) {
   EXPECT_EQ(dir_.count(), 2);
 }
 
+TEST_F(Build, AMeshFarFromZeroIsBuiltAndVerifiedAsPreciselyAsOneNearIt) {
+  const auto box_at = [](int x, int y) {
+    const auto vertex = [&](const char* at) {
+      return "v " + std::to_string(x) + at + " " + std::to_string(y) + at + " 0" + at + "\n";
+    };
+    return vertex(".1125") + vertex(".48125") + "v " + std::to_string(x) + ".1125 " +
+           std::to_string(y) + ".39062 0.2\nf 1 2 3\n";
+  };
+  const auto build_at = [&](int x, int y, const std::string& output) {
+    write_text(mesh_, box_at(x, y));
+    const std::string lo = std::to_string(x) + "," + std::to_string(y) + ",0,",
+                      hi = std::to_string(x) + ".8," + std::to_string(y) + ".8,0.8";
+    EXPECT_EQ(build({"-r", "256", "--bounds", lo + hi}, output).status, 0);
+    const ProcessResult verified = run_voxdag({"verify", output, "--mesh", mesh_});
+    EXPECT_EQ(verified.status, 0) << verified.err;
+    return Json::parse(run_voxdag({"info", output, "--json"}).out);
+  };
+  const Json near = build_at(0, 0, dir_ / "near.vdag"),
+             far = build_at(500000, 4649776, dir_ / "far.vdag");
+  EXPECT_EQ(near.at("voxels"), far.at("voxels"));
+  EXPECT_EQ(far.at("transform").at("origin"), (Json{500000, 4649776, 0}));
+  // The grid around the mesh has its origin at the mesh's lower corner.
+  EXPECT_EQ(build({"-r", "64"}).status, 0);
+  const Json around = Json::parse(run_voxdag({"info", output_, "--json"}).out);
+  EXPECT_NEAR(around.at("transform").at("origin").at(0), 500000.1125, 1e-8);
+}
+
+TEST_F(Build, ATriangleThatIsLeftOutIsAWarning) {
+  write_text(mesh_, std::string(kMesh) + "v nan 0 0\nf 1 2 5\n");
+  const ProcessResult result = build({"-r", "64", "-q"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err,
+            "voxdag: warning: " + mesh_ + ": 1 triangle left out: a vertex is not finite\n");
+}
+
 TEST_F(Build, QuietPrintsNothing) {
   const ProcessResult result = build({"-r", "64", "--quiet"});
   EXPECT_EQ(result.status, 0);

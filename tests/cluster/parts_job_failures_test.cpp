@@ -201,7 +201,7 @@ TEST_F(PartsJobFailures, AFolderInUseIsRefused) {
             work().string() + ": another job is working in this folder");
 }
 
-TEST_F(PartsJobFailures, AVertexThatIsNotFiniteIsTheErrorOfReadMesh) {
+TEST_F(PartsJobFailures, TrianglesWithAVertexThatIsNotFiniteAreLeftOut) {
   std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\n";
   for (int i = 0; i < 3000; ++i) text += "f 1 2 3\n";
   PartsJob job = job_of(*folder_, scene_, 5);
@@ -209,8 +209,12 @@ TEST_F(PartsJobFailures, AVertexThatIsNotFiniteIsTheErrorOfReadMesh) {
   job.chunk_bytes = 64;
   MemoryBudget unlimited;
   write_text(job.mesh, text);  // an unused vertex may be anything
-  build_in_parts(job, kProgram, ranks(), &unlimited);
+  EXPECT_EQ(build_in_parts(job, kProgram, ranks(), &unlimited).bad_triangles, 0u);
   write_text(job.mesh, text + "f 2 3 4\n");
+  const PartsReport report = build_in_parts(job, kProgram, ranks(), &unlimited);
+  EXPECT_EQ(report.bad_triangles, 1u);
+  EXPECT_EQ(report.metadata.source.triangles, 3000u);
+  write_text(job.mesh, "v 0 0 0\nv 1 0 0\nv nan 0 0\nf 1 2 3\n");
   EXPECT_EQ(error_of([&] { build_in_parts(job, kProgram, ranks(), &unlimited); }),
             error_of([&] { read_mesh(job.mesh); }));
 }

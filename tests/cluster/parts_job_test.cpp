@@ -105,7 +105,12 @@ struct MeshFile {
 };
 
 std::vector<MeshFile> mesh_files() {
+  std::string far = random_obj(400, "\n");  // far from 0 along x
+  for (std::size_t at = 0; (at = far.find("v 0.", at)) != far.npos;)
+    far.replace(at, 3, "v 4649776");
   return {{"polygons.obj", random_obj(400, "\n")},
+          {"far.obj", far},
+          {"far.off", "OFF\n3 1 0\n0 4649776.1 0\n1 4649776.1 0\n0 4649776.9 0.5\n3 0 1 2\n"},
           {"triangles.ply", random_ply(600, false, 3)},
           {"big_endian.ply", random_ply(600, true, 3)},
           {"quads.ply", random_ply(300, false, 4)},

@@ -13,6 +13,7 @@
 #include "voxdag/file/model/written_by.hpp"
 #include "voxdag/file/report/dag_report.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/formats/readers/used_vertices.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -79,6 +80,8 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
   job.grid = arguments.grid;
   job.parts = arguments.parts;
   arguments.access.give_rights(job.reading);
+  std::vector<std::string> warnings;
+  job.reading.warnings = &warnings;
   std::optional<TemporaryFolder> temporary;
   if (arguments.work_folder.empty()) temporary.emplace(arguments.output);
   job.work_folder =
@@ -93,6 +96,9 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
     throw;
   }
   if (!process.is_first()) return;
+  if (parts.bad_triangles > 0)
+    warnings.push_back(bad_triangles_warning(session.subject, parts.bad_triangles));
+  print_warnings(warnings, session);
 
   const DagReport report = report_of_file(parts, arguments.output);
   warn_if_empty(report.metadata.counts.voxels, arguments.output, session);

@@ -46,8 +46,13 @@ void add_mesh_access_options(const Command& command, MeshAccess& access, const O
 }
 
 Mesh read_mesh_file(const std::string& file, const MeshAccess& access, Session& session) {
-  return read_and_check(file, access, session,
-                        [&](const ReadOptions& options) { return read_mesh(file, options); });
+  std::vector<std::string> warnings;
+  Mesh mesh = read_and_check(file, access, session, [&](ReadOptions options) {
+    options.warnings = &warnings;
+    return read_mesh(file, options);
+  });
+  print_warnings(warnings, session);
+  return mesh;
 }
 
 MeshWithAppearance read_mesh_file_with_appearance(const std::string& file, const MeshAccess& access,

@@ -30,7 +30,7 @@ struct MeshAccess {
 void add_mesh_access_options(const Command& command, MeshAccess& access,
                              const Option* mesh = nullptr);
 
-/// Reads a mesh. Throws Error, also if the mesh names one of the outputs.
+/// Reads a mesh and prints the warnings. Throws Error, also if the mesh names one of the outputs.
 Mesh read_mesh_file(const std::string& file, const MeshAccess& access, Session& session);
 
 /// Reads a mesh and its appearance, and prints the warnings. Throws Error like read_mesh_file().

@@ -21,6 +21,7 @@
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/query/surface_area.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/float_origin.hpp"
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
@@ -50,19 +51,22 @@ std::byte* store_value(std::byte* at, const T& value) {
   return at + sizeof value;
 }
 
-/// Reads rows of `columns` floats, and writes rows of `row_bytes` bytes, a batch at a time:
-/// answer(floats of all rows, number of rows, output).
+/// Reads rows of `columns` floats or doubles, and writes rows of `row_bytes` bytes, a batch at a
+/// time: answer(numbers of all rows, number of rows, output).
 template <class Answer>
 std::uint64_t answer_rows(const std::string& input, std::uint64_t columns,
                           const std::string& output, const std::string& dtype,
                           std::size_t row_bytes, Session& session, const Answer& answer) {
-  NpyReader reader(input, "<f4", {columns}, sizeof(float));
+  NpyReader reader(input, {columns});
   NpyWriter writer(output, dtype, {}, row_bytes, reader.rows());
   const auto most =
       static_cast<std::size_t>(std::min<std::uint64_t>(kPointsPerBatch, reader.rows()));
-  std::vector<float> values(most * columns);
+  std::vector<double> values(most * columns);
+  std::vector<float> floats(reader.has_doubles() ? 0 : values.size());
   std::vector<std::byte> rows(most * row_bytes);
-  while (const std::size_t count = reader.read_rows(values.data(), most)) {
+  void* const out = reader.has_doubles() ? static_cast<void*>(values.data()) : floats.data();
+  while (const std::size_t count = reader.read_rows(out, most)) {
+    std::copy(floats.begin(), floats.end(), values.begin());
     session.progress.throw_if_cancelled();
     answer(values, count, rows);
     writer.write_rows(rows.data(), count);
@@ -83,13 +87,13 @@ std::string answer_points(const QueryArguments& arguments, const DagModel& file,
       "[('occupied', '|b1'), ('voxel', '<i4', (3,)), ('nearest', '<i4', (3,)), "
       "('distance', '<f4')]",
       kBytes, session,
-      [&](const std::vector<float>& values, std::size_t count, std::vector<std::byte>& rows) {
+      [&](const std::vector<double>& values, std::size_t count, std::vector<std::byte>& rows) {
         constexpr std::size_t kChunk = 256;
         polled_for(
             (count + kChunk - 1) / kChunk, 1, &session.progress, "query", [&](std::size_t chunk) {
               for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
-                const float* const p = values.data() + 3 * i;
-                const auto world = static_cast<Vec3d>(Vec3f{p[0], p[1], p[2]});
+                const double* const p = values.data() + 3 * i;
+                const Vec3d world{p[0], p[1], p[2]};
                 const Vec3i voxel = containing_voxel(grid, world);
                 const auto nearest =
                     nearest_voxel(dag, (world - grid.origin) * (1 / grid.voxel_size));
@@ -111,21 +115,25 @@ std::string answer_segments(const QueryArguments& arguments, const DagModel& fil
                             Session& session) {
   constexpr std::size_t kBytes = 17;
   const CpuScene scene{VoxelSet(file.view())};
+  Grid grid = file.grid();
+  const Vec3d near = float_origin(grid.bounds());  // Rays are in float32.
+  grid.origin = grid.origin - near;
   std::vector<Ray> rays;
   std::vector<Hit> hits;
   std::uint64_t clear = 0;
   const std::uint64_t segments = answer_rows(
       arguments.segments, 6, arguments.output,
       "[('clear', '|b1'), ('t', '<f4'), ('voxel', '<i4', (3,))]", kBytes, session,
-      [&](const std::vector<float>& values, std::size_t count, std::vector<std::byte>& rows) {
+      [&](const std::vector<double>& values, std::size_t count, std::vector<std::byte>& rows) {
         rays.clear();
         hits.resize(count);
         for (std::size_t i = 0; i < count; ++i) {
-          const float* const s = values.data() + 6 * i;
-          const Vec3f from{s[0], s[1], s[2]}, to{s[3], s[4], s[5]};
+          const double* const s = values.data() + 6 * i;
+          const auto from = static_cast<Vec3f>(Vec3d{s[0], s[1], s[2]} - near),
+                     to = static_cast<Vec3f>(Vec3d{s[3], s[4], s[5]} - near);
           rays.push_back({from, 0, to - from, 1});
         }
-        trace_batch(scene, file.grid(), rays, hits);
+        trace_batch(scene, grid, rays, hits);
         for (std::size_t i = 0; i < count; ++i) {
           const Hit& hit = hits[i];
           clear += hit.hit ? 0 : 1;
@@ -253,12 +261,14 @@ void add_query_command(const Command& program, Session& session) {
     kinds.push_back(option);
     return option;
   };
-  add(command.text("--points", arguments->points, "P.npy",
-                   "For each point (N x 3 float32, world units): whether it is in a voxel, and the "
-                   "nearest voxel with its distance"));
-  add(command.text("--segments", arguments->segments, "S.npy",
-                   "For each segment (N x 6 float32, from and to): whether it meets no voxel, and "
-                   "the first voxel that it meets"));
+  add(command.text(
+      "--points", arguments->points, "P.npy",
+      "For each point (N x 3 float32 or float64, world units): whether it is in a voxel, and the "
+      "nearest voxel with its distance"));
+  add(command.text(
+      "--segments", arguments->segments, "S.npy",
+      "For each segment (N x 6 float32 or float64, from and to): whether it meets no voxel, and "
+      "the first voxel that it meets"));
   add(command.flag("--distances", arguments->distances,
                    "For each place of --window: the distance of its centre to the nearest voxel"));
   const Option heights = add(command.parsed(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <tuple>
 
 #include "voxdag/cluster/missing_files.hpp"
 #include "voxdag/cluster/shared_mesh.hpp"
@@ -63,7 +64,9 @@ MeshFacts mesh_facts(const MeshJob& job) {
   if (has_facts(job)) return stored_facts(job);
   SharedMesh mesh(job.ranks, job.folder, job.mesh, job.reading, job.chunk_bytes);
   MeshFacts facts;
-  facts.grid = grid_of(job, mesh.used_bounds());
+  Box3d bounds = Box3d::empty();
+  std::tie(bounds, facts.bad_triangles) = mesh.used_vertices();
+  facts.grid = grid_of(job, bounds);
   facts.vertices = mesh.count_vertices();
   facts.triangles = mesh.triangles().size();
   const std::uint64_t per_segment = segment_triangles(*job.reading.work.memory);

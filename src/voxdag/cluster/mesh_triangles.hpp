@@ -26,6 +26,7 @@ struct MeshJob {
 struct MeshFacts {
   Grid grid;
   std::uint64_t vertices = 0, triangles = 0;
+  std::uint64_t bad_triangles = 0;  ///< Those that have a vertex that is not finite: left out.
   std::uint64_t segments = 0, triangles_per_segment = 0;
 };
 

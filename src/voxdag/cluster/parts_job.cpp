@@ -106,7 +106,9 @@ class PartsRun {
 
     VdagMetadata& metadata = report_.metadata;
     metadata.grid = facts.grid;
-    metadata.source = {job_.mesh.filename().string(), facts.vertices, facts.triangles};
+    metadata.source = {job_.mesh.filename().string(), facts.vertices,
+                       facts.triangles - facts.bad_triangles};
+    report_.bad_triangles = facts.bad_triangles;
     metadata.program = program;
     metadata.build = voxdag::settings_of(job_.grid);
     metadata.counts = dag.counts;

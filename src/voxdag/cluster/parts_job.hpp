@@ -48,6 +48,7 @@ struct PartsReport {
   std::array<double, kPartsSteps.size()> seconds{};      ///< Wall-clock, per step.
   std::array<double, kPartsSteps.size()> cpu_seconds{};  ///< Of the threads of all ranks, per step.
   std::array<std::uint64_t, kPartsSteps.size()> bytes_sent{};  ///< Between ranks, per step.
+  std::uint64_t bad_triangles = 0;  ///< Left out: they have a vertex that is not finite.
   std::uint64_t parts = 0;
   std::uint64_t built = 0;  ///< Parts that this run built; the others were whole already.
   std::uint32_t mailboxes = 0;

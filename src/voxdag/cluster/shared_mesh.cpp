@@ -9,9 +9,11 @@
 #include "voxdag/cluster/mailboxes.hpp"
 #include "voxdag/cluster/missing_files.hpp"
 #include "voxdag/cluster/unique_records.hpp"
+#include "voxdag/core/float_origin.hpp"
 #include "voxdag/core/io/mapped_arrays.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/formats/readers/used_vertices.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
 #include "voxdag/mesh/vertex_table.hpp"
 
@@ -24,8 +26,9 @@ constexpr std::uint64_t kMinChunks = 64, kMaxTasks = 1024;
 /// The pages of the mesh are dropped from memory after so many triangles.
 constexpr std::uint64_t kReleaseTriangles = std::uint64_t{1} << 20;
 
-constexpr const char *kCounts = "mesh/counts", *kVertices = "mesh/vertices",
-                     *kTriangles = "mesh/triangles";
+constexpr const char *kCounts = "mesh/counts", *kVertices = "vertices", *kTriangles = "triangles",
+                     *kOrigin = "mesh/origin";
+constexpr const char *kFolder = "mesh/", *kNearFolder = "mesh/near/";
 
 }  // namespace
 
@@ -47,17 +50,30 @@ SharedMesh::SharedMesh(Ranks& ranks, const WorkFolder& folder, const std::filesy
     tasks_ = (chunks_->count() + chunks_per_task_ - 1) / chunks_per_task_;
     count_chunks();
   }
-  if (chunks_)
-    read_chunks();
-  else
+  if (!chunks_) {
     read_alone();
-  vertices_.emplace(folder_, kVertices, tasks_, work_);
-  triangles_.emplace(folder_, kTriangles, tasks_, work_);
+    open(kFolder);
+    origin_ = folder_.open_seen(kOrigin, work_).values<Vec3d>()[0];
+    return;
+  }
+  read_chunks(kFolder);
+  open(kFolder);
+  const Vec3d origin = float_origin(used_vertices().first);
+  if (origin == Vec3d{}) return;
+  origin_ = origin;
+  chunks_->set_origin(origin);
+  read_chunks(kNearFolder);
+  open(kNearFolder);
+}
+
+void SharedMesh::open(const std::string& folder) {
+  vertices_.emplace(folder_, folder + kVertices, tasks_, work_);
+  triangles_.emplace(folder_, folder + kTriangles, tasks_, work_);
 }
 
 template <class Body>
-void SharedMesh::for_each_missing(JobCounter counter, const char* name, const Body& body) {
-  const auto name_of = [name](std::uint64_t task) { return numbered_name(name, task); };
+void SharedMesh::for_each_missing(JobCounter counter, const std::string& name, const Body& body) {
+  const auto name_of = [&name](std::uint64_t task) { return numbered_name(name, task); };
   make_missing(ranks_, folder_, {counter, tasks_, name_of, "read"}, work_, [&](std::uint64_t task) {
     WorkFileWriter file = folder_.create(name_of(task));
     body(task, file);
@@ -94,16 +110,18 @@ void SharedMesh::count_chunks() {
   tasks_ = 1;
 }
 
-void SharedMesh::read_chunks() {
-  for_each_missing(kMeshVerticesCounter, kVertices, [&](std::uint64_t task, WorkFileWriter& file) {
-    write_values<Vec3f>(task, &ChunkCounts::vertices, file,
-                        [&](std::uint64_t chunk, std::span<Vec3f> vertices) {
-                          chunks_->read_vertices(chunk, vertices);
-                        });
-  });
-  const ArrayFiles<Vec3f> vertices(folder_, kVertices, tasks_, work_);
+void SharedMesh::read_chunks(const std::string& folder) {
+  const std::string vertices_name = folder + kVertices, triangles_name = folder + kTriangles;
+  for_each_missing(kMeshVerticesCounter, vertices_name,
+                   [&](std::uint64_t task, WorkFileWriter& file) {
+                     write_values<Vec3f>(task, &ChunkCounts::vertices, file,
+                                         [&](std::uint64_t chunk, std::span<Vec3f> vertices) {
+                                           chunks_->read_vertices(chunk, vertices);
+                                         });
+                   });
+  const ArrayFiles<Vec3f> vertices(folder_, vertices_name, tasks_, work_);
   for_each_missing(
-      kMeshTrianglesCounter, kTriangles, [&](std::uint64_t task, WorkFileWriter& file) {
+      kMeshTrianglesCounter, triangles_name, [&](std::uint64_t task, WorkFileWriter& file) {
         write_values<Triangle>(task, &ChunkCounts::triangles, file,
                                [&](std::uint64_t chunk, std::span<Triangle> triangles) {
                                  ArrayFiles<Vec3f>::Reader reader(vertices);
@@ -137,9 +155,11 @@ void SharedMesh::write_values(std::uint64_t task, std::uint64_t ChunkCounts::*co
 }
 
 void SharedMesh::read_alone() {
-  if (ranks_.rank() == 0 && !(folder_.open(numbered_name(kVertices, 0), work_) &&
-                              folder_.open(numbered_name(kTriangles, 0), work_))) {
-    MappedArrays arrays(folder_.file(numbered_name(kVertices, 0)).parent_path());
+  const std::string vertices = numbered_name(std::string(kFolder) + kVertices, 0),
+                    triangles = numbered_name(std::string(kFolder) + kTriangles, 0);
+  if (ranks_.rank() == 0 && !(folder_.open(vertices, work_) && folder_.open(triangles, work_) &&
+                              folder_.open(kOrigin, work_))) {
+    MappedArrays arrays(folder_.file(vertices).parent_path());
     ReadOptions reading = reading_;
     reading.work = work_;
     reading.arrays = &arrays;
@@ -147,9 +167,9 @@ void SharedMesh::read_alone() {
     // read_mesh() left the bytes reserved; this releases them at the end.
     reading.work.memory->release(memory_bytes(mesh));
     const MemoryReservation held(reading.work.memory, memory_bytes(mesh));
-    const auto write = [&](const char* name, std::span<const std::byte> bytes) {
+    const auto write = [&](const std::string& name, std::span<const std::byte> bytes) {
       constexpr std::size_t kStep = std::size_t{16} << 20;
-      WorkFileWriter file = folder_.create(numbered_name(name, 0));
+      WorkFileWriter file = folder_.create(name);
       for (std::size_t at = 0; at < bytes.size(); at += kStep) {
         work_.poll();
         file.write(bytes.subspan(at, std::min(kStep, bytes.size() - at)));
@@ -157,8 +177,9 @@ void SharedMesh::read_alone() {
       }
       file.commit();
     };
-    write(kVertices, std::as_bytes(std::span<const Vec3f>(mesh.vertices)));
-    write(kTriangles, std::as_bytes(std::span<const Triangle>(mesh.triangles)));
+    write(vertices, std::as_bytes(std::span<const Vec3f>(mesh.vertices)));
+    write(triangles, std::as_bytes(std::span<const Triangle>(mesh.triangles)));
+    write(kOrigin, std::as_bytes(std::span<const Vec3d, 1>(&mesh.origin, 1)));
   }
   ranks_.barrier();
 }
@@ -168,67 +189,46 @@ void SharedMesh::release() const {
   triangles_->release();
 }
 
-Box3d SharedMesh::used_bounds() {
-  constexpr std::uint64_t kNone = ~std::uint64_t{0};
+std::pair<Box3d, std::uint64_t> SharedMesh::used_vertices() {
   const auto rank = static_cast<std::uint64_t>(ranks_.rank()),
              count = static_cast<std::uint64_t>(ranks_.count());
   const std::uint64_t all = triangles_->size(),
                       steps = (all + kReleaseTriangles - 1) / kReleaseTriangles,
                       own = steps > rank ? (steps - rank - 1) / count + 1 : 0;
   std::mutex mutex;
-  Box3f box = Box3f::empty();
-  std::uint64_t bad_triangle = kNone;  // the first triangle with a vertex that is not finite
+  UsedVertices used;
   parallel_for(own, [&](std::size_t i) {
     work_.poll();
     ArrayFiles<Vec3f>::Reader vertices(*vertices_);
     ArrayFiles<Triangle>::Reader triangles(*triangles_);
-    Box3f of_step = Box3f::empty();
-    std::uint64_t bad = kNone;
+    UsedVertices of_step;
     const std::uint64_t first = (rank + i * count) * kReleaseTriangles,
                         last = std::min(first + kReleaseTriangles, all);
-    for (std::uint64_t t = first; t < last; ++t)
-      for (const std::uint32_t vertex : triangles[t]) {
-        const Vec3f& position = vertices[vertex];
-        if (!is_finite(position)) bad = std::min(bad, t);
-        of_step.extend(position);
-      }
+    for (std::uint64_t t = first; t < last; ++t) {
+      const auto [a, b, c] = triangles[t];
+      of_step.add(vertices[a], vertices[b], vertices[c]);
+    }
     release();
     const std::lock_guard guard(mutex);
-    bad_triangle = std::min(bad_triangle, bad);
-    if (!of_step.is_empty()) {
-      box.extend(of_step.lo);
-      box.extend(of_step.hi);
-    }
+    used.add(of_step);
   });
-  std::vector<std::uint64_t> mine = {bad_triangle};
-  for (const Vec3f corner : {box.lo, box.hi})
+  std::vector<std::uint64_t> mine = {used.bad_triangles};
+  for (const Vec3f corner : {used.bounds.lo, used.bounds.hi})
     for (int axis = 0; axis < 3; ++axis) mine.push_back(std::bit_cast<std::uint32_t>(corner[axis]));
   const std::vector<std::uint64_t> gathered = ranks_.all_gather(mine);
-  box = Box3f::empty();
+  used = {};
   for (std::size_t r = 0; r < gathered.size(); r += mine.size()) {
-    bad_triangle = std::min(bad_triangle, gathered[r]);
     const auto number = [&](std::size_t i) {
       return std::bit_cast<float>(static_cast<std::uint32_t>(gathered[r + i]));
     };
-    box.lo = min(box.lo, {number(1), number(2), number(3)});
-    box.hi = max(box.hi, {number(4), number(5), number(6)});
+    used.add({{{number(1), number(2), number(3)}, {number(4), number(5), number(6)}}, gathered[r]});
   }
-  if (bad_triangle != kNone) {
-    if (ranks_.rank() == 0)
-      for (const std::uint32_t vertex : ArrayFiles<Triangle>::Reader(*triangles_)[bad_triangle])
-        if (!is_finite(ArrayFiles<Vec3f>::Reader(*vertices_)[vertex])) throw_bad_vertex(vertex);
+  if (used.bounds.is_empty()) {
+    if (ranks_.rank() == 0) throw Error(path_.string(), "", kNoGoodTriangle);
     ranks_.barrier();
   }
-  return {static_cast<Vec3d>(box.lo), static_cast<Vec3d>(box.hi)};
-}
-
-void SharedMesh::throw_bad_vertex(std::uint64_t vertex) const {
-  // read_mesh() has checked the vertices of a mesh without chunks.
-  const auto after = std::upper_bound(
-      starts_.begin(), starts_.end(), vertex,
-      [](std::uint64_t index, const ChunkCounts& start) { return index < start.vertices; });
-  const auto chunk = static_cast<std::uint64_t>(after - starts_.begin()) - 1;
-  chunks_->throw_bad_vertex(chunk, vertex - starts_[chunk].vertices);
+  return {{from_origin(origin_, used.bounds.lo), from_origin(origin_, used.bounds.hi)},
+          used.bad_triangles};
 }
 
 std::uint64_t SharedMesh::count_vertices() {

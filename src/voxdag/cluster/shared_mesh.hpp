@@ -6,8 +6,11 @@
 /// rank 0.
 ///
 ///   mesh/counts-T      ChunkCounts of each chunk of task T; nothing if rank 0 must read the mesh
-///   mesh/vertices-T    Vec3f of each vertex
+///   mesh/vertices-T    Vec3f of each vertex, from Mesh::origin
 ///   mesh/triangles-T   Triangle: three indices into all vertices
+///   mesh/origin        Mesh::origin, if rank 0 has read the mesh
+///   mesh/near/         vertices and triangles of a mesh that is far from 0: the others have no
+///   origin
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -15,6 +18,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "voxdag/cluster/missing_files.hpp"
@@ -88,9 +92,11 @@ class SharedMesh {
   const ArrayFiles<Triangle>& triangles() const { return *triangles_; }
   /// Returns the number of vertices that read_mesh() gives: vertices() can repeat some. Collective.
   std::uint64_t count_vertices();
-  /// Returns the box of the vertices that triangles use. Collective. Throws Error if a triangle
-  /// uses a vertex that is not finite.
-  Box3d used_bounds();
+  /// Returns Mesh::origin, from which vertices() are measured, in world units.
+  Vec3d origin() const { return origin_; }
+  /// Returns the box of the vertices that triangles use, in world units, and the number of
+  /// triangles that have a vertex that is not finite; both without these. Collective.
+  std::pair<Box3d, std::uint64_t> used_vertices();
 
   /// Drops the pages of the mesh from this process's memory. Thread-safe.
   void release() const;
@@ -98,17 +104,17 @@ class SharedMesh {
  private:
   /// Calls body(task, file) for the tasks that lack their file, shared among the ranks. Collective.
   template <class Body>
-  void for_each_missing(JobCounter counter, const char* name, const Body& body);
+  void for_each_missing(JobCounter counter, const std::string& name, const Body& body);
   void count_chunks();
-  void read_chunks();
+  void read_chunks(const std::string& folder);
   void read_alone();
+  void open(const std::string& folder);
   /// Calls read(chunk, values) for the chunks of a task and writes the values. `count` is the
   /// number of them in ChunkCounts.
   template <class T, class Read>
   void write_values(std::uint64_t task, std::uint64_t ChunkCounts::*count, WorkFileWriter& file,
                     const Read& read);
   std::uint64_t first_chunk(std::uint64_t task) const;
-  void throw_bad_vertex(std::uint64_t vertex) const;
 
   Ranks& ranks_;
   const WorkFolder& folder_;
@@ -121,6 +127,7 @@ class SharedMesh {
   std::vector<ChunkCounts> starts_;  ///< Contents of all chunks before each; then of all.
   std::optional<ArrayFiles<Vec3f>> vertices_;
   std::optional<ArrayFiles<Triangle>> triangles_;
+  Vec3d origin_{};
 };
 
 }  // namespace voxdag

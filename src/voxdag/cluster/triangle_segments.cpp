@@ -51,9 +51,12 @@ Batch map_batch(const SharedMesh& mesh, const Grid& grid, const CellFinder& find
   for (std::uint64_t i = first; i < last; ++i) {
     const Triangle& t = triangles[i];
     pieces.clear();
+    const Vec3<Vec3f> corners{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+    if (!is_finite(corners.x) || !is_finite(corners.y) || !is_finite(corners.z)) continue;
+    const Vec3d origin = mesh.origin();
     quantize_triangle(grid,
-                      {static_cast<Vec3d>(vertices[t[0]]), static_cast<Vec3d>(vertices[t[1]]),
-                       static_cast<Vec3d>(vertices[t[2]])},
+                      {from_origin(origin, corners.x), from_origin(origin, corners.y),
+                       from_origin(origin, corners.z)},
                       pieces);
     for (const QuantizedTriangle& piece : pieces) {
       const auto index = static_cast<std::uint32_t>(batch.triangles.size());

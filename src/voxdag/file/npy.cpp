@@ -52,8 +52,19 @@ NpyReader::NpyReader(const std::filesystem::path& path) : path_(path) {
 NpyReader::NpyReader(const std::filesystem::path& path, const std::string& dtype,
                      const std::vector<std::uint64_t>& row_shape, std::size_t item_bytes)
     : NpyReader(path) {
-  row_bytes_ = items_per_row(row_shape) * item_bytes;
+  check_header(read_header(), dtype, row_shape, item_bytes);
+}
+
+NpyReader::NpyReader(const std::filesystem::path& path, const std::vector<std::uint64_t>& row_shape)
+    : NpyReader(path) {
   const NpyHeader header = read_header();
+  has_doubles_ = header.dtype == "<f8";
+  check_header(header, has_doubles_ ? "<f8" : "<f4", row_shape, has_doubles_ ? 8 : 4);
+}
+
+void NpyReader::check_header(const NpyHeader& header, const std::string& dtype,
+                             const std::vector<std::uint64_t>& row_shape, std::size_t item_bytes) {
+  row_bytes_ = items_per_row(row_shape) * item_bytes;
   if (header.dtype != dtype)
     fail("items must be " + dtype_literal(dtype) + ", not " + dtype_literal(header.dtype));
   if (header.shape.empty() || !std::equal(header.shape.begin() + 1, header.shape.end(),

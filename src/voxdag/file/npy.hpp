@@ -43,11 +43,14 @@ class NpyReader {
   /// implies. Throws Error with path and byte.
   NpyReader(const std::filesystem::path& path, const std::string& dtype,
             const std::vector<std::uint64_t>& row_shape, std::size_t item_bytes);
+  /// Opens `path` like an array of '<f4', or of '<f8': see has_doubles().
+  NpyReader(const std::filesystem::path& path, const std::vector<std::uint64_t>& row_shape);
   NpyReader(const NpyReader&) = delete;
   NpyReader& operator=(const NpyReader&) = delete;
 
   std::uint64_t rows() const { return rows_; }  ///< N
   std::size_t row_bytes() const { return row_bytes_; }
+  bool has_doubles() const { return has_doubles_; }  ///< Items are '<f8'.
 
   /// Reads the next rows, at most `most_rows`, into `out` (row_bytes() each). Returns the number of
   /// rows read: less than `most_rows` only at the end, and then 0.
@@ -57,6 +60,8 @@ class NpyReader {
   friend NpyStart read_npy_start(const std::filesystem::path& path);
   /// Opens `path` and reads nothing.
   explicit NpyReader(const std::filesystem::path& path);
+  void check_header(const NpyHeader& header, const std::string& dtype,
+                    const std::vector<std::uint64_t>& row_shape, std::size_t item_bytes);
   void read_exactly(void* out, std::size_t bytes);
   NpyHeader read_header();
   void check_size() const;
@@ -66,6 +71,7 @@ class NpyReader {
   Descriptor input_;
   std::optional<std::uint64_t> file_bytes_;  ///< Size of a regular file; none for a pipe.
   std::uint64_t position_ = 0;
+  bool has_doubles_ = false;
   std::uint64_t rows_ = 0, rows_read_ = 0;
   std::size_t row_bytes_ = 0;
 };

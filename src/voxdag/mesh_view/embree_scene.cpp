@@ -30,12 +30,13 @@ EmbreeScene::EmbreeScene(Mesh mesh, EmbreeMode mode) : mesh_(std::move(mesh)) {
   if (!bounds.is_empty()) {
     const Vec3d lo = static_cast<Vec3d>(bounds.lo), hi = static_cast<Vec3d>(bounds.hi);
     const double longest = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
-    center_ = (lo + hi) * 0.5;
+    center_ = (lo + hi) * 0.5 + mesh_.origin;
     if (longest > 0) scale_ = std::ldexp(1.0, -std::ilogb(longest));
     radius_ = std::sqrt(dot(hi - lo, hi - lo)) / 2 * scale_;
   }
   for (Vec3f& vertex : mesh_.vertices)
-    vertex = static_cast<Vec3f>(from_world(static_cast<Vec3d>(vertex)));
+    vertex = static_cast<Vec3f>(from_world(mesh_.to_world(vertex)));
+  mesh_.origin = {};
   // Embree loads 16 bytes from each vertex, also from the last one.
   mesh_.vertices.reserve(mesh_.vertices.size() + 1);
   mesh_.vertices.push_back({});

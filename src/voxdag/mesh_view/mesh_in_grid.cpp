@@ -49,7 +49,7 @@ void check_mesh_in_grid(const Mesh& mesh, const VoxelSet& scene, const Grid& gri
   std::size_t inside = 0, covered = 0;
   Box3d bounds = Box3d::empty();
   for (std::size_t i = 0; i < mesh.triangles.size(); i += step) {
-    const Vec3d vertex = static_cast<Vec3d>(mesh.vertices[mesh.triangles[i][i / step % 3]]);
+    const Vec3d vertex = mesh.position(mesh.triangles[i][i / step % 3]);
     bounds.extend(vertex);
     const Vec3d at = grid.to_grid(vertex);
     // Points on the grid's upper faces may round to just outside.

@@ -64,6 +64,56 @@ TEST_F(ReadAppearance, ObjVerticesMayHaveColours) {
   EXPECT_EQ(result.appearance.materials[0].base_color, (Vec3f{1, 1, 1}));
 }
 
+TEST_F(ReadAppearance, ObjVerticesWithoutColoursKeepThatOfTheirMaterial) {
+  write("a.mtl", "newmtl red\nKd 1 0 0\nnewmtl both\nKd 0 1 0\n");
+  const auto result = read("a.obj", "mtllib a.mtl\n" + kSquare +
+                                        "v 0 0 1 0 0 1\nv 1 0 1 0 0 1\nv 0 1 1 0 0 1\nusemtl red\n"
+                                        "f 1 2 3\nusemtl both\nf 5 6 7\nf 1 2 5\n");
+  const Appearance& a = result.appearance;
+  EXPECT_EQ(a.materials[0].base_color, (Vec3f{1, 0, 0}));
+  EXPECT_EQ(a.materials[1].base_color, (Vec3f{1, 1, 1}));
+  const Rgba16 blue{0, 0, 65535, 65535}, green{0, 65535, 0, 65535};
+  EXPECT_EQ(a.colors, (std::vector<Rgba16>{{}, {}, {}, blue, blue, blue, green, green, blue}));
+}
+
+TEST_F(ReadAppearance, ColoursMayBeNumbersUpTo255) {
+  const auto obj = read_mesh_with_appearance(
+      write("a.obj", "v 0 0 0 255 127.5 0\nv 1 0 0 1 0 0\nv 0 1 0 255 255 255\nf 1 2 3\n"));
+  const auto ply = read_mesh_with_appearance(
+      write("a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+            "property float z\nproperty float red\nproperty double green\n"
+            "property float blue\nelement face 1\nproperty list uchar int vertex_index\n"
+            "end_header\n0 0 0 255 127.5 0\n1 0 0 1 0 0\n0 1 0 255 255 255\n3 0 1 2\n"));
+  for (const auto& read : {obj, ply}) {
+    EXPECT_EQ(read.warnings.size(), 1u);
+    expect_near(read.appearance.colors[0].color(), {1, srgb_to_linear(0.5f), 0});
+    expect_near(read.appearance.colors[1].color(), {srgb_to_linear(1.0f / 255), 0, 0});
+    EXPECT_EQ(read.appearance.colors[2], Rgba16{});
+  }
+}
+
+TEST_F(ReadAppearance, PlyFacesMayNumberTheirTextures) {
+  const auto result = read_mesh_with_appearance(write(
+      "a.ply",
+      "ply\nformat ascii 1.0\ncomment TextureFile a.png\ncomment TextureFile b.png\n"
+      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
+      "property list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+      "property int texnumber\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 1 0 0 1 0\n"
+      "3 0 1 2 6 0 0 1 0 0 1 1\n3 0 1 2 6 0 0 1 0 0 1 -1\n3 0 1 2 6 0 0 1 0 0 1 2\n"));
+  EXPECT_EQ(result.mesh.triangle_materials, (StoredVector<std::uint32_t>{0, 1, 2, 2}));
+  EXPECT_EQ(result.mesh.materials, (std::vector<std::string>{"a.png", "b.png", ""}));
+  const Appearance& a = result.appearance;
+  ASSERT_EQ(a.materials.size(), 3u);
+  EXPECT_EQ(a.images[1].path, directory_.path() / "b.png");
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(a.materials[static_cast<std::size_t>(i)].color_map.image, i == 2 ? -1 : i);
+  EXPECT_EQ(
+      result.warnings,
+      std::vector{path("a.ply") + ": 1 face with the number of a texture that does not exist: "
+                                  "without a texture"});
+}
+
 TEST_F(ReadAppearance, ReferencesToNothingAreAWarning) {
   const auto result =
       read_mesh_with_appearance(write("a.obj", kSquare + "vt 1 1\nf 1/1 2/2 3/-7\n"));

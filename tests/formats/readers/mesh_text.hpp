@@ -16,7 +16,6 @@ namespace voxdag {
 /// A reader of meshes without appearance.
 class Reader {
  public:
-  Reader(Mesh (*read)(const MeshSource&)) : read_(read) {}
   Reader(MeshWithAppearance (*read)(const MeshSource&, ReadParts))
       : read_([read](const MeshSource& source) { return read(source, ReadParts::kMesh).mesh; }) {}
 

@@ -130,8 +130,6 @@ TEST(PlyReader, HeaderFaultsNameTheLine) {
   EXPECT_EQ(refused("float y", "float x"), "mesh: line 7: property 'x' is declared twice");
   EXPECT_EQ(refused("element face", "element vertex"),
             "mesh: line 9: element 'vertex' is declared twice");
-  EXPECT_EQ(refused("element face", "element tristrips"),
-            "mesh: line 11: PLY with triangle strips: save it with a 'face' element");
   EXPECT_EQ(refused("element face", "element edge"),
             "mesh: line 11: PLY without a 'face' element: there is no surface to read");
   EXPECT_EQ(refused("vertex_indices", "corners"),
@@ -153,8 +151,6 @@ TEST(PlyReader, BodyFaultsNameTheLine) {
             "mesh: line 16: the row has '3' after its last property");
   EXPECT_EQ(refused("4 0 1 2 3", "2 0 1"),
             "mesh: no face has three corners or more: there is no surface to read");
-  EXPECT_EQ(refused("1 1 0\n", "1 nan 0\n"),
-            "mesh: line 14: vertex is not finite and a face uses it");
   EXPECT_EQ(refused("1 1 0\n", "1 one 0\n"), "mesh: line 14: coordinate 'one' is not a number");
   EXPECT_EQ(refused("4 0 1 2 3\n", ""),
             "mesh: line 16: the file ends after 0 of 1 rows of element 'face'");
@@ -168,14 +164,53 @@ TEST(PlyReader, BinaryFaultsNameTheByte) {
   bad[first_index] = 4;
   EXPECT_EQ(refusal(read_ply, bad), "mesh: byte " + std::to_string(first_index) +
                                         ": vertex index 4 is out of range: 4 vertices");
-  bad = square;
-  bad[body + 2 * 11 + 19 + 5] = static_cast<char>(0xFF);  // the second vertex's x becomes NaN
-  bad[body + 2 * 11 + 19 + 4] = static_cast<char>(0xFF);
-  EXPECT_EQ(refusal(read_ply, bad), "mesh: byte " + std::to_string(body + 2 * 11 + 19) +
-                                        ": vertex is not finite and a face uses it");
   EXPECT_EQ(refusal(read_ply, square.substr(0, body + 80)),
             "mesh: byte " + std::to_string(body + 80) +
                 ": the file ends after 3 of 4 rows of element 'vertex'");
+}
+
+std::string strips(bool is_text) {
+  std::string text =
+      std::string("ply\nformat ") + (is_text ? "ascii" : "binary_little_endian") +
+      " 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+      "element tristrips 2\nproperty list int int vertex_indices\nend_header\n";
+  const std::vector<std::vector<std::int32_t>> rows = {{0, 1, 2, 3, -1, 2, 3, 4, -1, 0, 1},
+                                                       {0, 1, 2, 2, 3, 4}};
+  const auto add = [&](auto number, char after) {
+    if (is_text)
+      text += std::to_string(number) + after;
+    else
+      append(text, number);
+  };
+  for (int v = 0; v < 5; ++v) {
+    add(static_cast<float>(v), ' ');
+    add(static_cast<float>(v * v), ' ');
+    add(0.0f, '\n');
+  }
+  for (const auto& row : rows) {
+    add(static_cast<std::int32_t>(row.size()), ' ');
+    for (std::size_t i = 0; i < row.size(); ++i) add(row[i], i + 1 < row.size() ? ' ' : '\n');
+  }
+  return text;
+}
+
+TEST(PlyReader, TriangleStripsAlternateTheirWinding) {
+  for (const bool is_text : {true, false}) {
+    const std::string text = strips(is_text);
+    // Triangles with two equal corners only join strips.
+    EXPECT_EQ(read_text(read_ply, text).triangles,
+              (StoredVector<Triangle>{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {0, 1, 2}, {3, 2, 4}}));
+    EXPECT_NE(refusal(read_ply, replaced(text, "element vertex 5", "element vertex 4")), "");
+    expect_any_prefix_is_safe(read_ply, text);
+  }
+}
+
+TEST(PlyReader, FacesBesideStripsAreRefused) {
+  EXPECT_NE(refusal(read_ply, replaced(kPlySquare, "end_header\n",
+                                       "element tristrips 1\nproperty list int int vertex_indices\n"
+                                       "end_header\n"))
+                .find("PLY with faces and triangle strips"),
+            std::string::npos);
 }
 
 TEST(PlyReader, AnyPrefixIsSafe) {

@@ -47,6 +47,78 @@ TEST(StlReader, BytesAfterTheLastFacetAreIgnored) {
   EXPECT_EQ(read_text(read_stl, binary_stl(kFacets, "") + "more").triangles, kTriangles);
 }
 
+MeshWithAppearance read_bytes(const std::string& bytes) {
+  return read_stl({bytes, "mesh", {}, nullptr, {}}, ReadParts::kMeshAndAppearance);
+}
+
+/// Returns a text with every `from` replaced.
+std::string with_all(std::string text, std::string_view from, std::string_view to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+TEST(StlReader, WordsThatAreMissingDoubledOrSplitAreAWarning) {
+  const auto expect_read = [](const std::string& text, int irregular) {
+    const auto read = read_bytes(text);
+    EXPECT_EQ(read.mesh.triangles, kTriangles) << text;
+    ASSERT_EQ(read.warnings.size(), irregular == 0 ? 0u : 1u) << text;
+    if (irregular > 0)
+      EXPECT_EQ(read.warnings[0].find("mesh: " + std::to_string(irregular) + " keyword"), 0u)
+          << text;
+  };
+  const std::string end = "endsolid a facet of life\n", start = "solid a facet of life\n";
+  expect_read(kTwoFacets, 0);
+  expect_read(with_all(kTwoFacets, "endsolid", "end solid"), 1);
+  expect_read(with_all(with_all(kTwoFacets, "endloop", "end loop"), "endfacet", "end facet"), 2);
+  expect_read(with_all(kTwoFacets, end, ""), 1);
+  expect_read(kTwoFacets + end, 1);
+  expect_read(start + kTwoFacets, 1);
+  expect_read(with_all(kTwoFacets, start, "solid\nendsolid\n"), 1);
+}
+
+TEST(StlReader, BinaryFilesMayBeginWithSolidAndHaveTrailingBytes) {
+  const auto read = read_bytes(binary_stl(kFacets, "solid part (exported)") + "\r\n");
+  EXPECT_EQ(read.mesh.triangles, kTriangles);
+  EXPECT_EQ(read.warnings, std::vector<std::string>{"mesh: ignored 2 bytes after the last facet"});
+}
+
+TEST(StlReader, ACountThatWasNeverWrittenIsThatOfTheSize) {
+  for (const char byte : {'\0', '\xFF'}) {
+    std::string bytes = binary_stl(kFacets, "streamed");
+    bytes.replace(80, 4, 4, byte);
+    const auto read = read_bytes(bytes);
+    EXPECT_EQ(read.mesh.triangles, kTriangles);
+    ASSERT_EQ(read.warnings.size(), 1u);
+    EXPECT_NE(read.warnings[0].find("the size of the file is that of 2"), std::string::npos);
+    EXPECT_NE(refusal(read_stl, bytes + "?"), "");
+  }
+}
+
+TEST(StlReader, FacetsMayHaveColours) {
+  const Rgba16 red{65535, 0, 0, 65535}, blue{0, 0, 65535, 65535},
+      grey = to_rgba16(kDefaultColor, 1);
+  const auto colors_of = [](std::string header, std::uint16_t first, std::uint16_t second) {
+    std::string bytes = binary_stl(kFacets, std::move(header));
+    std::string words;
+    append(words, first);
+    append(words, second);
+    bytes.replace(84 + 48, 2, words.substr(0, 2)).replace(84 + 98, 2, words.substr(2));
+    const auto read = read_bytes(bytes);
+    const std::vector<Rgba16>& colors = read.appearance.colors;
+    return colors.empty() ? std::vector<Rgba16>{} : std::vector{colors[2], colors[3]};
+  };
+  using Colors = std::vector<Rgba16>;
+  EXPECT_EQ(colors_of("", 0, 0), Colors{});
+  EXPECT_EQ(colors_of("", 31, 7), Colors{});  // attributes of another kind
+  EXPECT_EQ(colors_of("", 0x8000 | 31 << 10, 0x8000 | 31), (Colors{red, blue}));
+  EXPECT_EQ(colors_of("", 0x8000 | 31 << 10, 0), (Colors{red, grey}));
+  const std::string magics = "COLOR=\xFF" + std::string("\0\0\xFF", 3);
+  EXPECT_EQ(colors_of(magics, 0, 0), (Colors{red, red}));
+  EXPECT_EQ(colors_of(magics, 31 << 10, 0x8000), (Colors{blue, red}));
+  EXPECT_EQ(colors_of("by hand " + magics, 31, 0xFFFF), (Colors{red, red}));
+}
+
 TEST(StlReader, WeldingComparesBits) {
   const Mesh mesh = read_text(read_stl, binary_stl({{{{0, 0, 0}, {-0.0f, 0, 0}, {0, 0, 0}}}}, ""));
   EXPECT_EQ(mesh.vertices.size(), 2u);
@@ -64,7 +136,7 @@ TEST(StlReader, NumbersEndWhereTheirWordEnds) {
     EXPECT_EQ(refusal(read_stl, first_x(word)),
               "mesh: line 5: coordinate '" + word + "' is not a number");
   for (const char* word : {"inf", "nan", "1e39"})
-    EXPECT_TRUE(refusal(read_stl, first_x(word)).ends_with("a vertex that is not finite")) << word;
+    EXPECT_FALSE(is_finite(read_text(read_stl, first_x(word)).vertices[1])) << word;
 }
 
 TEST(StlReader, SeveralSolidsAreOneMesh) {
@@ -106,8 +178,6 @@ TEST(StlReader, RefusalsNameThePlaceAndTheReason) {
             "mesh: byte 180: the file ends after 1 of 2 facets");
   EXPECT_EQ(refusal(read_stl, binary_stl({}, "")),
             "mesh: STL with 0 facets: there is no surface to read");
-  EXPECT_EQ(refusal(read_stl, binary_stl({{{{0, 0, 0}, {1, 0, NAN}, {0, 1, 0}}}}, "")),
-            "mesh: byte 108: vertex is not finite");
   EXPECT_EQ(refusal(read_stl, "solid\nendsolid\n"),
             "mesh: STL without facets: there is no surface to read");
   const auto without = [](std::string_view part) {
@@ -116,8 +186,6 @@ TEST(StlReader, RefusalsNameThePlaceAndTheReason) {
   };
   EXPECT_EQ(refusal(read_stl, without("   vertex 1 1 0\n")),
             "mesh: line 6: expected 'vertex', not 'endloop'");
-  EXPECT_EQ(refusal(read_stl, without("endsolid a facet of life\n")),
-            "mesh: line 14: the file ends before 'endsolid'");
   EXPECT_EQ(refusal(read_stl, without(" 0 1 1.5e0 ENDLOOP")),
             "mesh: line 13: coordinate 'ENDFACET' is not a number");
 }

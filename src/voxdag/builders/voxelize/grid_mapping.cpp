@@ -159,8 +159,7 @@ QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid, Work work)
       added_source_(CountedAllocator<std::uint32_t>(work.memory)) {
   std::atomic<bool> any_out_of_range{false};
   polled_for(vertices_.size(), 4096, work, "quantize", [&](std::size_t i) {
-    vertices_[i] =
-        quantize(grid, static_cast<Vec3d>(mesh.vertices[i])).value_or(Vec3i{kOutOfRange, 0, 0});
+    vertices_[i] = quantize(grid, mesh.position(i)).value_or(Vec3i{kOutOfRange, 0, 0});
     if (vertices_[i].x == kOutOfRange) any_out_of_range.store(true, std::memory_order_relaxed);
   });
   if (!any_out_of_range.load()) return;
@@ -170,9 +169,7 @@ QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid, Work work)
     if (in_range(i)) continue;
     const Triangle& t = mesh.triangles[i];
     pieces.clear();
-    clip({static_cast<Vec3d>(mesh.vertices[t[0]]), static_cast<Vec3d>(mesh.vertices[t[1]]),
-          static_cast<Vec3d>(mesh.vertices[t[2]])},
-         grid, pieces);
+    clip({mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])}, grid, pieces);
     added_.insert(added_.end(), pieces.begin(), pieces.end());
     added_source_.insert(added_source_.end(), pieces.size(), static_cast<std::uint32_t>(i));
   }

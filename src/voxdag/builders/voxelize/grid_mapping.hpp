@@ -1,8 +1,8 @@
 #pragma once
 /// Maps mesh coordinates to the voxel grid: chooses the Grid and rounds vertices to 1/256 voxel.
 ///
-/// design: "Exact cover". A vertex v becomes q = llround((double(v) - origin) *
-/// quantization_scale), component by component; everything after that is integer.
+/// design: "Exact cover". A vertex v, as Mesh::position() returns it, becomes q = llround((v -
+/// origin) * quantization_scale), component by component; everything after that is integer.
 #include <cstdint>
 #include <optional>
 #include <vector>

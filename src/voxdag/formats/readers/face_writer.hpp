@@ -2,7 +2,6 @@
 /// Writes the triangles of faces.
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 
 #include "voxdag/formats/readers/chunks.hpp"
@@ -100,20 +99,5 @@ class FaceWriter {
   CountedVector<std::uint32_t> corners_;  ///< Of the face: indices of vertices.
   CountedVector<Vec3f> positions_;        ///< Of the corners.
 };
-
-inline constexpr const char* kBadVertex = "vertex is not finite and a face uses it";
-
-/// Returns the index of the first vertex that a triangle uses and that is not finite. Throws
-/// Cancelled.
-inline std::optional<std::size_t> find_bad_vertex(const MeshSource& source, const Mesh& mesh) {
-  CancelPoll poll(source.work());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    poll.step();
-    if ((t + 1) % 65536 == 0) source.count_work(65536 * sizeof(Triangle));
-    for (const std::uint32_t index : mesh.triangles[t])
-      if (!is_finite(mesh.vertices[index])) return index;
-  }
-  return std::nullopt;
-}
 
 }  // namespace voxdag

@@ -33,6 +33,8 @@ class MeshChunks {
   MeshChunks(const MeshChunks&) = delete;
   MeshChunks& operator=(const MeshChunks&) = delete;
 
+  /// Sets MeshSource::origin for the following calls.
+  void set_origin(Vec3d origin) { source_.origin = origin; }
   /// Returns the number of chunks. It depends on the file and `chunk_bytes` alone.
   virtual std::uint64_t count() const = 0;
   /// Returns the contents of a chunk; nothing if only read_mesh() can read this file.
@@ -42,9 +44,6 @@ class MeshChunks {
   /// Reads a chunk's triangles; `triangles` has their number. Every index is in range.
   virtual void read_triangles(std::uint64_t chunk, const AllVertices& vertices,
                               std::span<Triangle> triangles) const = 0;
-  /// Throws the error about vertex `index` of a chunk, which is not finite and which a triangle
-  /// uses.
-  [[noreturn]] virtual void throw_bad_vertex(std::uint64_t chunk, std::uint64_t index) const = 0;
   /// Returns whether vertices of different chunks with equal bits are one vertex of the mesh.
   virtual bool repeats_vertices() const { return false; }
 

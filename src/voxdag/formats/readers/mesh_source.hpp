@@ -9,6 +9,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/parallel/work.hpp"
+#include "voxdag/core/vec.hpp"
 #include "voxdag/formats/readers/read_options.hpp"
 
 namespace voxdag {
@@ -21,6 +22,7 @@ struct MeshSource {
   std::filesystem::path folder;      ///< Relative names of other files start here.
   const MappedFile* file = nullptr;  ///< The mapping that `bytes` views. Null: plain memory.
   ReadOptions options;
+  Vec3d origin{};  ///< Readers subtract it from each vertex, in double, before they round.
 
   const Work& work() const { return options.work; }
 
@@ -43,6 +45,9 @@ struct MeshSource {
   void end_pass() const {
     if (options.arrays != nullptr) options.arrays->release();
   }
+
+  /// Returns a point of the file as a vertex of the mesh.
+  Vec3f vertex(Vec3d point) const { return static_cast<Vec3f>(point - origin); }
 
   Error error(const std::string& reason) const { return {name, "", reason}; }
   Error error_at_byte(std::size_t offset, const std::string& reason) const {

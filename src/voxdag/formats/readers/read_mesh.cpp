@@ -3,37 +3,24 @@
 #include <algorithm>
 #include <new>
 
+#include "voxdag/core/float_origin.hpp"
 #include "voxdag/formats/readers/assimp/assimp_reader.hpp"
 #include "voxdag/formats/readers/gltf/gltf_reader.hpp"
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 #include "voxdag/formats/readers/off/off_reader.hpp"
+#include "voxdag/formats/readers/plain_colors.hpp"
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 #include "voxdag/formats/readers/stl/stl_reader.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
+#include "voxdag/formats/readers/used_vertices.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
 
 namespace voxdag {
 namespace {
 
-/// Returns the mesh with grey materials of its names: for formats without appearance.
-MeshWithAppearance in_grey(Mesh mesh) {
-  MeshWithAppearance result;
-  std::vector<Material>& materials = result.appearance.materials;
-  materials.resize(std::max<std::size_t>(mesh.materials.size(), 1));
-  for (Material& material : materials) material.base_color = kDefaultColor;
-  for (std::size_t i = 0; i < mesh.materials.size(); ++i) materials[i].name = mesh.materials[i];
-  result.mesh = std::move(mesh);
-  return result;
-}
-
+/// Reads with the reader of the format. Subtracts source.origin from the vertices.
 MeshWithAppearance read_format(const MeshSource& source, const std::string& extension,
                                ReadParts parts) {
-  const auto finish = [&](Mesh mesh) {
-    if (parts == ReadParts::kMesh) return MeshWithAppearance{std::move(mesh), {}, {}};
-    const MemoryReservation materials(source.work().memory,
-                                      mesh.materials.size() * sizeof(Material));
-    return in_grey(std::move(mesh));
-  };
   switch (detect_mesh_format(source.bytes, extension)) {
     case MeshFormat::kObj:
       return read_obj(source, parts);
@@ -42,22 +29,35 @@ MeshWithAppearance read_format(const MeshSource& source, const std::string& exte
     case MeshFormat::kGltf:
       return read_gltf(source, parts);
     case MeshFormat::kStl:
-      return finish(read_stl(source));
+      return read_stl(source, parts);
     case MeshFormat::kOff:
-      return finish(read_off(source));
+      return read_off(source, parts);
     case MeshFormat::kOther:
       break;
   }
-  return finish(read_with_assimp(source, extension));
+  MeshWithAppearance read{read_with_assimp(source, extension), {}, {}};
+  if (parts == ReadParts::kMeshAndAppearance) add_plain_materials(source, read);
+  return read;
 }
 
 MeshWithAppearance read(const std::filesystem::path& path, const ReadOptions& options,
                         ReadParts parts) {
   const MappedFile file(path, MappedFile::Access::kSequential);
-  const MeshSource source{file.text(), path.string(), path.parent_path(), &file, options};
+  MeshSource source{file.text(), path.string(), path.parent_path(), &file, options};
   if (source.bytes.empty()) throw source.error("the file is empty");
   try {
-    MeshWithAppearance result = read_format(source, path.extension().string(), parts);
+    const std::string extension = path.extension().string();
+    MeshWithAppearance result = read_format(source, extension, parts);
+    UsedVertices used = used_vertices(source, result.mesh);
+    source.origin =
+        float_origin({static_cast<Vec3d>(used.bounds.lo), static_cast<Vec3d>(used.bounds.hi)});
+    if (source.origin != Vec3d{}) {  // The mesh is far from 0: reads it again, from near by.
+      result = {};
+      result = read_format(source, extension, parts);
+      result.mesh.origin = source.origin;
+      used = used_vertices(source, result.mesh);
+    }
+    remove_bad_triangles(source, used.bad_triangles, result);
     source.end_pass();
     if (options.work.memory != nullptr)
       options.work.memory->reserve(memory_bytes(result.mesh) + memory_bytes(result.appearance));
@@ -91,7 +91,11 @@ MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension
 }
 
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
-  return read(path, options, ReadParts::kMesh).mesh;
+  MeshWithAppearance result = read(path, options, ReadParts::kMesh);
+  if (options.warnings != nullptr)
+    options.warnings->insert(options.warnings->end(), result.warnings.begin(),
+                             result.warnings.end());
+  return std::move(result.mesh);
 }
 
 MeshWithAppearance read_mesh_with_appearance(const std::filesystem::path& path,

@@ -13,7 +13,11 @@ namespace voxdag {
 /// library was built with it. docs/meshes.md lists the features of each format that are read.
 ///
 /// Every index of the mesh is in range, every vertex that a triangle uses is finite, and there is
-/// at least one triangle. The result depends on the file alone, not on the number of threads.
+/// at least one triangle: triangles with a vertex that is not finite are left out with a warning.
+/// The result depends on the file alone, not on the number of threads.
+///
+/// A mesh that is far from 0 (float_origin() in core/float_origin.hpp) is read a second time: its
+/// vertices are measured from Mesh::origin before they are rounded to float32.
 ///
 /// Memory: if ReadOptions::work has a budget, reads within it. memory_bytes(mesh) stay reserved;
 /// the caller releases them when it frees the mesh. Pages of mapped files do not count: they are

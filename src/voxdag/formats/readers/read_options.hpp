@@ -2,6 +2,7 @@
 /// Options of mesh readers.
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "voxdag/core/io/mapped_arrays.hpp"
@@ -21,6 +22,8 @@ struct ReadOptions {
   /// If not null: receives the paths of all files that the mesh names (MTL, buffers, textures), so
   /// that the caller does not overwrite them. They need not exist.
   std::vector<std::filesystem::path>* named_files = nullptr;
+  /// If not null: receives the warnings of read_mesh(), which returns none.
+  std::vector<std::string>* warnings = nullptr;
 
   /// Returns how many bytes of an array of the mesh count as memory: none if it is in a file.
   std::uint64_t counted(std::uint64_t array_bytes) const {

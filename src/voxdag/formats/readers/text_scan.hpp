@@ -50,6 +50,22 @@ bool parse_float(std::string_view token, Float& value) {
   return parse_float_prefix(token.data(), last, value) == last;
 }
 
+/// Parses a number like parse_float_prefix() and sets `value` to the float32 nearest to the number
+/// less `origin`. The subtraction is in double.
+inline const char* parse_coordinate_prefix(const char* first, const char* last, double origin,
+                                           float& value) {
+  if (origin == 0) return parse_float_prefix(first, last, value);
+  double number = 0;
+  const char* const end = parse_float_prefix(first, last, number);
+  value = static_cast<float>(number - origin);
+  return end;
+}
+/// Parses the whole token like parse_coordinate_prefix(). Returns false if it is not a number.
+inline bool parse_coordinate(std::string_view token, double origin, float& value) {
+  const char* const last = token.data() + token.size();
+  return parse_coordinate_prefix(token.data(), last, origin, value) == last;
+}
+
 /// Parses the whole token as a decimal integer with or without a sign. Returns false if it is not
 /// an integer.
 inline bool parse_int(std::string_view token, std::int64_t& value) {

@@ -1,10 +1,16 @@
 #pragma once
 /// Warnings of a reader, limited in number.
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace voxdag {
+
+/// Returns a number and its noun: "1 triangle", "3 triangles".
+inline std::string counted(std::uint64_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
 
 /// Keeps the first kMax warnings and counts the rest.
 class Warnings {

@@ -36,6 +36,7 @@ struct DisplacedMesh {
   Vec2f uv(CornerIndex corner) const {
     return appearance.uvs.empty() ? Vec2f{} : appearance.uvs[corner];
   }
+  /// Returns the position of a corner, from Mesh::origin.
   const Vec3f& position(CornerIndex corner) const {
     return mesh.vertices[mesh.triangles[corner / 3][corner % 3]];
   }

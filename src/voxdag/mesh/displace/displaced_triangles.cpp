@@ -76,7 +76,7 @@ DisplacedTriangles::Pass::Pass(const DisplacedTriangles& all, std::uint32_t base
   constexpr std::uint8_t edges[3] = {0b101, 0b011, 0b110};
   for (std::uint32_t c = 0; c < 3; ++c) {
     const CornerIndex corner = 3 * base + c;
-    corners[c].position = Vec3d(mesh.position(corner));
+    corners[c].position = mesh.mesh.to_world(mesh.position(corner));
     corners[c].normal = n[c];
     corners[c].b1 = c == 1 ? 1.0f : 0.0f;
     corners[c].b2 = c == 2 ? 1.0f : 0.0f;

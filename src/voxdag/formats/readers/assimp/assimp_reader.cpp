@@ -114,8 +114,8 @@ void add_mesh(const MeshSource& source, const aiMesh& part, Mesh& mesh) {
     throw source.error("the mesh has more than 4,294,967,294 vertices");
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
     const aiVector3D& p = part.mVertices[i];
-    mesh.vertices.push_back(
-        {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+    mesh.vertices.push_back(source.vertex(
+        {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)}));
   }
   for (unsigned f = 0; f < part.mNumFaces; ++f) {
     const aiFace& face = part.mFaces[f];
@@ -126,8 +126,6 @@ void add_mesh(const MeshSource& source, const aiMesh& part, Mesh& mesh) {
         throw source.error("vertex index " + std::to_string(face.mIndices[c]) +
                            " is out of range: " + std::to_string(part.mNumVertices) + " vertices");
       triangle[c] = static_cast<std::uint32_t>(start) + face.mIndices[c];
-      if (!is_finite(mesh.vertices[triangle[c]]))
-        throw source.error("a face uses a vertex that is not finite");
     }
     mesh.triangles.push_back(triangle);
     mesh.triangle_materials.push_back(part.mMaterialIndex);

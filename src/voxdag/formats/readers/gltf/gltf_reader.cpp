@@ -117,7 +117,7 @@ class GltfReader {
         for (std::size_t i = 0; i < primitive.positions->size(); ++i) {
           step();
           const Vec3d p(to_vec3(primitive.positions->floats<3>(i)));
-          mesh_.vertices.push_back(static_cast<Vec3f>(instance.transform.point(p)));
+          mesh_.vertices.push_back(source_.vertex(instance.transform.point(p)));
         }
       for (std::size_t i = 0; i < primitive.triangles; ++i)
         add_triangle(primitive, i, first_vertex + primitive.first_vertex, instance.transform);
@@ -137,9 +137,6 @@ class GltfReader {
         throw primitive.value.error("vertex index " + std::to_string(index) + " is out of range: " +
                                     std::to_string(primitive.positions->size()) + " vertices");
       triangle[c] = first_vertex + static_cast<std::uint32_t>(index);
-      if (!is_finite(mesh_.vertices[triangle[c]]))
-        throw primitive.value.error("vertex " + std::to_string(index) +
-                                    " is not finite and a triangle uses it");
       if (has_appearance_) set_attributes(primitive, index, 3 * t + c, transform);
     }
     mesh_.triangles.push_back(triangle);

@@ -17,9 +17,9 @@ namespace voxdag {
 /// COLOR_0 and the materials; opens no images.
 ///
 /// Throws Error with the byte of malformed JSON or the path of the JSON value at fault: accessors
-/// beyond their buffers, indices out of range, used vertices that are not finite, nodes that do not
-/// form trees, missing buffers, required extensions that change geometry (Draco, meshopt), no
-/// triangles, or at least 2^32 corners or vertices, which even a small file can make by instances.
+/// beyond their buffers, indices out of range, nodes that do not form trees, missing buffers,
+/// required extensions that change geometry (Draco, meshopt), no triangles, or at least 2^32
+/// corners or vertices, which even a small file can make by instances.
 MeshWithAppearance read_gltf(const MeshSource& source, ReadParts parts);
 
 }  // namespace voxdag

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "voxdag/core/parallel/parallel_for.hpp"
-#include "voxdag/image/color.hpp"
+#include "voxdag/formats/readers/plain_colors.hpp"
 
 namespace voxdag {
 namespace {
@@ -44,7 +44,8 @@ ObjAttributes::ObjAttributes(const MeshSource& source, const ObjCounts& totals, 
     throw source.error("the mesh has more than 4,294,967,294 texture coordinates or normals");
   uvs_.resize(totals.uvs);
   normals_.resize(totals.normals);
-  if (has_colors) colors_.resize(totals.vertices);
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  if (has_colors) colors_.resize(totals.vertices, {kNone, kNone, kNone});
   if (!uvs_.empty()) uv_references_.resize(3 * totals.triangles);
   if (!normals_.empty()) normal_references_.resize(3 * totals.triangles);
 }
@@ -64,9 +65,7 @@ void ObjAttributes::set_normal(std::size_t index, std::string_view numbers) {
 
 void ObjAttributes::set_color(std::size_t vertex, std::string_view numbers) {
   std::array<float, 3> rgb{};
-  if (parse_numbers(numbers, rgb) == 3)
-    colors_[vertex] =
-        to_rgba16({srgb_to_linear(rgb[0]), srgb_to_linear(rgb[1]), srgb_to_linear(rgb[2])}, 1);
+  if (parse_numbers(numbers, rgb) == 3) colors_[vertex] = {rgb[0], rgb[1], rgb[2]};
 }
 
 ObjReferences ObjAttributes::parse_references(std::string_view corner, const ObjCounts& seen) {
@@ -108,16 +107,44 @@ void ObjAttributes::look_up(CountedVector<std::uint32_t>& references, CountedVec
   values = CountedVector<T>(source_.work().memory);
 }
 
-void ObjAttributes::finish(const Mesh& mesh, Appearance& appearance) {
+void ObjAttributes::finish(Appearance& appearance) {
   look_up(uv_references_, uvs_, appearance.uvs);
   look_up(normal_references_, normals_, appearance.normals);
-  if (colors_.empty()) return;
-  results_.resize(results_.bytes() + 3 * mesh.triangles.size() * sizeof(Rgba16));
-  appearance.colors.resize(3 * mesh.triangles.size());
-  parallel_for(mesh.triangles.size(), 65536, [&](std::size_t t) {
-    for (std::size_t c = 0; c < 3; ++c)
-      appearance.colors[3 * t + c] = colors_[mesh.triangles[t][c]];
+}
+
+void ObjAttributes::join_colors(const Mesh& mesh, MeshWithAppearance& read) {
+  float greatest = 0;
+  for (const Vec3f color : colors_)
+    for (int channel = 0; channel < 3; ++channel) greatest = std::max(greatest, color[channel]);
+  const float scale = plain_color_scale(greatest);
+  if (scale != 1) read.warnings.push_back(colors_to_255_warning(source_.name));
+  parallel_for(colors_.size(), 65536, [&](std::size_t v) {
+    const Vec3f srgb = colors_[v] * scale;
+    colors_[v] = {srgb_to_linear(srgb.x), srgb_to_linear(srgb.y), srgb_to_linear(srgb.z)};
   });
+  const auto has_color = [&](std::uint32_t vertex) { return !std::isnan(colors_[vertex].x); };
+  std::vector<Material>& materials = read.appearance.materials;
+  std::vector<Rgba16>& colors = read.appearance.colors;
+  std::vector<char> is_colored(materials.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t vertex : mesh.triangles[t])
+      if (has_color(vertex)) is_colored[Appearance::material_index(mesh, t)] = 1;
+  results_.resize(results_.bytes() + 3 * mesh.triangles.size() * sizeof(Rgba16));
+  colors.resize(3 * mesh.triangles.size());
+  parallel_for(mesh.triangles.size(), 65536, [&](std::size_t t) {
+    const std::uint32_t m = Appearance::material_index(mesh, t);
+    // Colours multiply the material's colour, which becomes white below.
+    const bool replaces_base = is_colored[m] != 0 && !materials[m].color_map.exists();
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t vertex = mesh.triangles[t][c];
+      if (has_color(vertex))
+        colors[3 * t + c] = to_rgba16(colors_[vertex], 1);
+      else if (replaces_base)
+        colors[3 * t + c] = to_rgba16(materials[m].base_color, 1);
+    }
+  });
+  for (std::size_t m = 0; m < materials.size(); ++m)
+    if (is_colored[m] != 0) materials[m].base_color = {1, 1, 1};
 }
 
 }  // namespace voxdag

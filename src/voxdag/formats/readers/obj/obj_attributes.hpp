@@ -37,7 +37,11 @@ class ObjAttributes {
                       const ObjReferences& c);
 
   /// Replaces the references by their values. Call it once, at the end. Throws OverMemory.
-  void finish(const Mesh& mesh, Appearance& appearance);
+  void finish(Appearance& appearance);
+  /// Joins the colours of vertices, if there are some, with the materials, which must be complete.
+  /// A vertex's colour replaces the base colour of its material. A vertex without a colour keeps
+  /// it.
+  void join_colors(const Mesh& mesh, MeshWithAppearance& read);
 
   bool has_colors() const { return !colors_.empty(); }
   std::size_t bad_references() const { return bad_references_; }
@@ -51,7 +55,7 @@ class ObjAttributes {
   const ObjCounts totals_;
   CountedVector<Vec2f> uvs_;
   CountedVector<Vec3f> normals_;
-  CountedVector<Rgba16> colors_;                                    ///< Per vertex.
+  CountedVector<Vec3f> colors_;  ///< Per vertex: sRGB as in the file; NaN: none.
   CountedVector<std::uint32_t> uv_references_, normal_references_;  ///< Per corner.
   MemoryReservation results_;                                       ///< The appearance's arrays.
   std::atomic<std::size_t> bad_references_{0};

@@ -50,8 +50,8 @@ std::optional<MappedFile> open_library(const std::filesystem::path& path,
 }  // namespace
 
 std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh& mesh,
-                                            const NameTable& libraries, bool has_vertex_colors,
-                                            std::size_t bad_references, Appearance& appearance) {
+                                            const NameTable& libraries, std::size_t bad_references,
+                                            Appearance& appearance) {
   Warnings warnings;
   if (bad_references > 0)
     warnings.add(source.name + ": " + std::to_string(bad_references) +
@@ -65,8 +65,7 @@ std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh
   const MemoryReservation memory(source.work().memory, bytes);
   materials.resize(count);
   for (std::size_t i = 0; i < mesh.materials.size(); ++i) materials[i].name = mesh.materials[i];
-  for (Material& material : materials)
-    if (!has_vertex_colors) material.base_color = kDefaultColor;
+  for (Material& material : materials) material.base_color = kDefaultColor;
 
   const NamedFiles files(source);
   MtlReader reader(source, files, appearance, warnings);
@@ -80,8 +79,6 @@ std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh
     if (const auto file = open_library(path, printed, warnings))
       reader.read(file->text(), path.parent_path(), printed);
   });
-  if (has_vertex_colors)
-    for (Material& material : materials) material.base_color = {1, 1, 1};
   for (std::size_t i = 0; i < materials.size() && !libraries.empty(); ++i)
     if (!materials[i].name.empty() && !reader.describes(i))
       warnings.add(source.name + ": no MTL file describes material " +

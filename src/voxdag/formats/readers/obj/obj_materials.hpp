@@ -10,12 +10,11 @@
 namespace voxdag {
 
 /// Fills appearance.materials from the MTL files that the `mtllib` statements with the arguments
-/// `libraries` name. Materials that no file describes are grey. If vertices have colours, these
-/// replace the base colours of materials. Returns the warnings. Throws Error for a name outside the
-/// OBJ file's folder.
+/// `libraries` name. Materials that no file describes are grey. Returns the warnings. Throws
+/// Error for a name outside the OBJ file's folder.
 std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh& mesh,
-                                            const NameTable& libraries, bool has_vertex_colors,
-                                            std::size_t bad_references, Appearance& appearance);
+                                            const NameTable& libraries, std::size_t bad_references,
+                                            Appearance& appearance);
 
 /// Adds the MTL files to ReadOptions::named_files without opening them.
 void report_obj_libraries(const MeshSource& source, const NameTable& libraries);

@@ -18,13 +18,13 @@ std::size_t count_triangles(std::string_view line, CancelPoll& poll) {
   return corners < 3 ? 0 : corners - 2;
 }
 
-/// Removes three coordinates from a line.
-Vec3f take_vertex(std::string_view& numbers, const char* position) {
+/// Removes three coordinates from a line and returns them as a vertex.
+Vec3f take_vertex(std::string_view& numbers, Vec3d origin, const char* position) {
   Vec3f vertex;
   for (int axis = 0; axis < 3; ++axis) {
     const std::string_view token = next_token(numbers);
     if (token.empty()) throw Fault{position, "the vertex has fewer than three coordinates"};
-    if (!parse_float(token, vertex[axis]))
+    if (!parse_coordinate(token, origin[axis], vertex[axis]))
       throw Fault{position, "coordinate " + in_quotes(token) + " is not a number"};
   }
   return vertex;
@@ -102,17 +102,15 @@ ObjChunk ObjFile::count(std::string_view chunk, ReadParts parts) const {
   return counted;
 }
 
-bool ObjFile::read_vertices(std::string_view chunk, std::span<Vec3f> vertices, ObjCounts seen,
+void ObjFile::read_vertices(std::string_view chunk, std::span<Vec3f> vertices, ObjCounts seen,
                             ObjAttributes* attributes) const {
   std::size_t done = 0;
-  bool all_finite = true;
   for_each_statement(chunk,
                      [&](ObjStatement statement, std::string_view line, const char* position) {
                        if (statement == ObjStatement::kVertex) {
                          if (done == vertices.size()) throw Fault{position, kFileChanged};
-                         const Vec3f vertex = take_vertex(line, position);
+                         const Vec3f vertex = take_vertex(line, source_.origin, position);
                          vertices[done++] = vertex;
-                         all_finite &= is_finite(vertex);
                          if (attributes != nullptr && attributes->has_colors() && is_finite(vertex))
                            attributes->set_color(seen.vertices, line);
                        } else if (attributes != nullptr && statement == ObjStatement::kUv) {
@@ -123,17 +121,6 @@ bool ObjFile::read_vertices(std::string_view chunk, std::span<Vec3f> vertices, O
                        seen.add_value(statement);
                      });
   if (done != vertices.size()) throw source_.error(kFileChanged);
-  return all_finite;
-}
-
-const char* ObjFile::find_vertex(std::string_view chunk, std::uint64_t index) const {
-  const char* found = nullptr;
-  std::uint64_t vertex = 0;
-  for_each_statement(chunk, [&](ObjStatement statement, std::string_view, const char* position) {
-    if (statement == ObjStatement::kVertex && vertex++ == index) found = position;
-  });
-  if (found == nullptr) throw source_.error(kFileChanged);
-  return found;
 }
 
 ObjFaces::ObjFaces(const MeshSource& source, const AllVertices& vertices,

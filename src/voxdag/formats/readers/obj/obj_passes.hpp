@@ -96,12 +96,10 @@ class ObjFile {
 
   /// Looks for colours of vertices only if the appearance is wanted.
   ObjChunk count(std::string_view chunk, ReadParts parts) const;
-  /// Reads the vertices of a chunk. Returns whether all are finite. If `attributes` is not null,
-  /// also reads colours, texture coordinates and normals; `seen` counts what precedes the chunk.
-  bool read_vertices(std::string_view chunk, std::span<Vec3f> vertices, ObjCounts seen,
+  /// Reads the vertices of a chunk. If `attributes` is not null, also reads colours, texture
+  /// coordinates and normals; `seen` counts what precedes the chunk.
+  void read_vertices(std::string_view chunk, std::span<Vec3f> vertices, ObjCounts seen,
                      ObjAttributes* attributes) const;
-  /// Returns the start of the line that defines vertex `index` of a chunk.
-  const char* find_vertex(std::string_view chunk, std::uint64_t index) const;
   /// Calls body(statement, the rest of its line, start of its line in the file) for each statement.
   template <class Body>
   void for_each_statement(std::string_view chunk, const Body& body) const {

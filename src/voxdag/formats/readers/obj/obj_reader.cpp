@@ -21,7 +21,6 @@ struct PlacedChunk {
   ObjCounts counts, first;               ///< Its contents; the contents of all chunks before.
   std::uint32_t material = kNoMaterial;  ///< The material at the start of the chunk.
   bool has_faces = false;
-  bool has_bad_vertex = false;  ///< A vertex of the chunk is NaN or infinite.
 };
 
 /// Reads all chunks into arrays that have their final size from the start.
@@ -41,12 +40,12 @@ class ObjReader {
     count_chunks();
     report_obj_libraries(source_, libraries_);
     read_chunks();
-    check_finite();
     MeshWithAppearance result;
     if (attributes_) {
-      attributes_->finish(mesh_, result.appearance);
-      result.warnings = read_obj_materials(source_, mesh_, libraries_, attributes_->has_colors(),
+      attributes_->finish(result.appearance);
+      result.warnings = read_obj_materials(source_, mesh_, libraries_,
                                            attributes_->bad_references(), result.appearance);
+      if (attributes_->has_colors()) attributes_->join_colors(mesh_, result);
     }
     result.mesh = std::move(mesh_);
     return result;
@@ -134,9 +133,8 @@ class ObjReader {
                                      [](const ObjRun& other) { return other.has_values; });
       const std::size_t begin = run->before.vertices,
                         end = next == chunk.runs.end() ? counts.vertices : next->before.vertices;
-      chunk.has_bad_vertex |=
-          !file_.read_vertices(run->text, vertices.subspan(begin, end - begin),
-                               chunk.first.with_values(run->before), attributes());
+      file_.read_vertices(run->text, vertices.subspan(begin, end - begin),
+                          chunk.first.with_values(run->before), attributes());
     }
   }
 
@@ -164,19 +162,6 @@ class ObjReader {
           });
     }
     faces.check_full();
-  }
-
-  /// Refuses triangles with a vertex that is not finite. Such a vertex may stay if unused.
-  void check_finite() const {
-    if (std::none_of(chunks_.begin(), chunks_.end(),
-                     [](const PlacedChunk& chunk) { return chunk.has_bad_vertex; }))
-      return;
-    const auto bad = find_bad_vertex(source_, mesh_);
-    if (!bad) return;
-    std::size_t i = chunks_.size() - 1;
-    while (chunks_[i].first.vertices > *bad) --i;
-    const char* const line = file_.find_vertex(chunks_[i].text, *bad - chunks_[i].first.vertices);
-    throw_fault(source_, {line, kBadVertex}, file_.line_end());
   }
 
   ObjAttributes* attributes() { return attributes_ ? &*attributes_ : nullptr; }
@@ -227,11 +212,6 @@ class ObjMeshChunks final : public MeshChunks {
           });
       faces.check_full();
     });
-  }
-
-  [[noreturn]] void throw_bad_vertex(std::uint64_t chunk, std::uint64_t index) const override {
-    const char* const line = file_.find_vertex(file_.chunks()[chunk], index);
-    throw_fault(source(), {line, kBadVertex}, file_.line_end());
   }
 
  private:

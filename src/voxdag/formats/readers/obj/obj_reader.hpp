@@ -11,11 +11,12 @@ namespace voxdag {
 /// Faces may come before their vertices. A backslash at the end of a line continues it.
 ///
 /// With its appearance: reads `vt`, `vn`, colours that follow a vertex's coordinates (`v x y z r g
-/// b`, sRGB) and the MTL files of `mtllib`. A corner whose `vt` or `vn` does not exist has no
-/// texture coordinates or normal.
+/// b`, sRGB, 0 to 1 or 0 to 255: see plain_color_scale()) and the MTL files of `mtllib`. A corner
+/// whose `vt` or `vn` does not exist has no texture coordinates or normal. A vertex without a
+/// colour keeps that of its material.
 ///
-/// Throws Error with the line: malformed vertices or faces, references out of range, triangles with
-/// a vertex that is not finite. Throws Error if there are no triangles.
+/// Throws Error with the line: malformed vertices or faces, references out of range. Throws Error
+/// if there are no triangles.
 MeshWithAppearance read_obj(const MeshSource& source, ReadParts parts);
 
 /// Opens an OBJ file in chunks. Throws as open_mesh_chunks() does.

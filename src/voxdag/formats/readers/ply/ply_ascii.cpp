@@ -25,7 +25,6 @@ class AsciiReader {
         texts_(LineChunks{source_.bytes.substr(header_.body), header_.line_end}.all()),
         first_rows_(texts_.size() + 1),
         first_triangles_(texts_.size() + 1),
-        has_bad_vertex_(texts_.size(), 0),
         mesh_(empty_mesh(source_.options.arrays)),
         vertices_{0, fields_.vertex.count,
                   [this](std::uint32_t vertex) { return mesh_.vertices[vertex]; }} {}
@@ -36,7 +35,10 @@ class AsciiReader {
     std::vector<std::size_t> triangles(texts_.size(), 0);
     for_each_row("scan", face_rows_, [&](Chunk& chunk, std::size_t, std::string_view row) {
       const std::size_t corners = count_corners(row, chunk.poll);
-      if (corners > 2) triangles[chunk.index] += corners - 2;
+      if (header_.has_strips)
+        triangles[chunk.index] += count_strips(row, chunk.poll);
+      else if (corners > 2)
+        triangles[chunk.index] += corners - 2;
     });
     for (std::size_t i = 0; i < texts_.size(); ++i)
       first_triangles_[i + 1] = first_triangles_[i] + triangles[i];
@@ -48,7 +50,6 @@ class AsciiReader {
     for_each_row("read", face_rows_, [this](Chunk& chunk, std::size_t, std::string_view row) {
       parse_face(chunk.faces, chunk.poll, row);
     });
-    check_finite();
     return std::move(mesh_);
   }
 
@@ -121,6 +122,18 @@ class AsciiReader {
     return static_cast<std::size_t>(corners);
   }
 
+  /// Returns the number of triangles of a row of strips.
+  std::size_t count_strips(std::string_view row, CancelPoll& poll) const {
+    PlyStrip strip;
+    std::size_t triangles = 0;
+    for (int p = 0; p <= fields_.indices; ++p)
+      take_ply_property(row, fields_.face.properties[p], poll, [&](std::string_view token) {
+        if (p == fields_.indices)
+          strip.add(to_int(token), [&](std::int64_t, std::int64_t, std::int64_t) { ++triangles; });
+      });
+    return triangles;
+  }
+
   /// Stores a value of the appearance. A malformed number counts as the number that it starts with,
   /// or as 0.
   static void take_value(const PlyColumns& columns, std::size_t property, std::string_view token,
@@ -142,12 +155,12 @@ class AsciiReader {
     for (std::size_t p = 0; p < properties.size(); ++p)
       take_ply_property(row, properties[p], chunk.poll, [&](std::string_view token) {
         for (int axis = 0; axis < 3; ++axis)
-          if (fields_.axes[axis] == static_cast<int>(p) && !parse_float(token, vertex[axis]))
+          if (fields_.axes[axis] == static_cast<int>(p) &&
+              !parse_coordinate(token, source_.origin[axis], vertex[axis]))
             throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
         if (has_values) take_value(body_.attributes->vertex_columns(), p, token, chunk.values);
       });
     check_ply_row_end(row);
-    if (!is_finite(vertex)) has_bad_vertex_[chunk.index] = 1;
     mesh_.vertices[index] = vertex;
     if (has_values) body_.attributes->take_vertex(index, chunk.values);
   }
@@ -161,21 +174,11 @@ class AsciiReader {
         if (property == fields_.material) faces.set_material(to_int(token), token.data());
         if (body_.attributes != nullptr)
           take_value(body_.attributes->face_columns(), p, token, faces.values);
-        if (property == fields_.indices) faces.add_corner(to_int(token), token.data());
+        if (property == fields_.indices) faces.add_index(to_int(token), token.data());
       });
     }
     check_ply_row_end(row);
     faces.finish_row(start);
-  }
-
-  void check_finite() {
-    if (std::find(has_bad_vertex_.begin(), has_bad_vertex_.end(), 1) == has_bad_vertex_.end())
-      return;
-    const auto bad = find_bad_vertex(source_, mesh_);
-    if (!bad) return;
-    for_each_row("read", vertex_rows_, [&](Chunk&, std::size_t i, std::string_view row) {
-      if (i == *bad) throw Fault{row.data(), kBadVertex};
-    });
   }
 
   const PlyBody& body_;
@@ -185,7 +188,6 @@ class AsciiReader {
   MemoryReservation& memory_;
   const std::vector<std::string_view> texts_;
   std::vector<std::size_t> first_rows_, first_triangles_;  ///< Per chunk, and then the totals.
-  std::vector<char> has_bad_vertex_;                       ///< Per chunk.
   Rows vertex_rows_, face_rows_;
   Mesh mesh_;
   const AllVertices vertices_;

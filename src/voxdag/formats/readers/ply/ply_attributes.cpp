@@ -7,8 +7,9 @@
 #include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/core/printable.hpp"
 #include "voxdag/formats/readers/named_files.hpp"
+#include "voxdag/formats/readers/plain_colors.hpp"
 #include "voxdag/formats/readers/ply/ply_color.hpp"
-#include "voxdag/image/color.hpp"
+#include "voxdag/formats/readers/warnings.hpp"
 
 namespace voxdag {
 namespace {
@@ -52,7 +53,7 @@ Vec2f to_uv(float u, float v) {
 }  // namespace
 
 PlyAttributes::PlyAttributes(const MeshSource& source, const PlyHeader& header,
-                             const PlyFields& fields)
+                             const PlyFields& fields, float float_scale)
     : source_(source),
       header_(header),
       vertex_colors_(source.work().memory),
@@ -71,8 +72,11 @@ PlyAttributes::PlyAttributes(const MeshSource& source, const PlyHeader& header,
   const PlyElement& colored = vertex_.color_components > 0 ? fields.vertex : fields.face;
   const PlyColumns& columns = vertex_.color_components > 0 ? vertex_ : face_;
   for (std::size_t p = 0; p < columns.slots.size(); ++p)
-    if (columns.slots[p] >= Slot::kRed && columns.slots[p] <= Slot::kAlpha)
-      color_scales_[columns.slots[p]] = ply_color_scale(colored.properties[p].type);
+    if (columns.slots[p] >= Slot::kRed && columns.slots[p] <= Slot::kAlpha) {
+      const PlyType type = colored.properties[p].type;
+      color_scales_[columns.slots[p]] = is_integer(type) ? ply_color_scale(type) : float_scale;
+      has_float_colors_ |= !is_integer(type);
+    }
 }
 
 void PlyAttributes::resize_vertices(std::size_t count) {
@@ -92,12 +96,17 @@ void PlyAttributes::resize_triangles(std::size_t count) {
   if (has_uvs) appearance_.uvs.resize(3 * count);
 }
 
-Rgba16 PlyAttributes::color_of(const PlyColumns& columns, const PlyRowValues& row) const {
+Rgba16 PlyAttributes::color_of(const PlyColumns& columns, const PlyRowValues& row) {
   std::array<float, 4> rgba{0, 0, 0, 1};
   for (std::size_t c = 0; c < static_cast<std::size_t>(columns.color_components); ++c)
     rgba[c] = row.scalars[c] * color_scales_[c];
-  return to_rgba16({srgb_to_linear(rgba[0]), srgb_to_linear(rgba[1]), srgb_to_linear(rgba[2])},
-                   rgba[3]);
+  if (has_float_colors_) {
+    const float most = std::max({rgba[0], rgba[1], rgba[2]});
+    float greatest = greatest_float_.load(std::memory_order_relaxed);
+    while (most > greatest && !greatest_float_.compare_exchange_weak(greatest, most)) {
+    }
+  }
+  return from_srgb({rgba[0], rgba[1], rgba[2]}, rgba[3]);
 }
 
 void PlyAttributes::take_vertex(std::size_t index, const PlyRowValues& row) {
@@ -110,7 +119,7 @@ void PlyAttributes::take_vertex(std::size_t index, const PlyRowValues& row) {
   if (vertex_.has_uvs) vertex_uvs_[index] = to_uv(row.scalars[Slot::kU], row.scalars[Slot::kV]);
 }
 
-Rgba16 PlyAttributes::face_color(const PlyRowValues& row) const {
+Rgba16 PlyAttributes::face_color(const PlyRowValues& row) {
   return face_.color_components > 0 ? color_of(face_, row) : Rgba16{};
 }
 
@@ -152,20 +161,27 @@ void PlyAttributes::read_materials(const Mesh& mesh, std::vector<std::string>& w
   if (!header_.textures.empty() && !has_uvs)
     warnings.push_back(source_.name + ": texture " + name_in_quotes(header_.textures[0]) +
                        " is ignored: the mesh has no texture coordinates");
-  if (header_.textures.size() > 1 && has_uvs)
+  const bool by_number = header_.has_texture_numbers && !mesh.triangle_materials.empty();
+  if (header_.textures.size() > 1 && has_uvs && !by_number)
     warnings.push_back(source_.name + ": only the first of " +
                        std::to_string(header_.textures.size()) + " textures is used");
-  const bool is_textured = has_uvs && !header_.textures.empty();
-  if (is_textured) {
-    const std::string_view name = header_.textures[0];
-    const NamedFiles files(source_);
+  if (bad_textures_ > 0)
+    warnings.push_back(source_.name + ": " + counted(bad_textures_, "face") +
+                       " with the number of a texture that does not exist: without a texture");
+  const std::size_t used = !has_uvs || header_.textures.empty() ? 0
+                           : by_number                          ? header_.textures.size()
+                                                                : 1;
+  const NamedFiles files(source_);
+  for (std::size_t i = 0; i < used; ++i) {
+    const std::string_view name = header_.textures[i];
     const std::filesystem::path path =
         files.find(source_.folder, name, {source_.name, "comment TextureFile"});
     appearance_.images.push_back({printable_path(source_.folder, name), path, {}});
   }
   const int components = std::max(vertex_.color_components, face_.color_components);
   for (Material& material : materials) {
-    if (is_textured) material.color_map.image = 0;
+    const auto number = by_number ? static_cast<std::size_t>(&material - materials.data()) : 0;
+    if (number < used) material.color_map.image = static_cast<int>(number);
     if (components == 4) material.alpha_mode = AlphaMode::kBlend;
     if (components == 0) material.base_color = kDefaultColor;
   }

@@ -1,6 +1,7 @@
 #pragma once
 /// Texture coordinates, normals and colours of a PLY file.
 #include <array>
+#include <atomic>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,12 +37,15 @@ struct PlyColumns {
 /// Collects the attributes while the mesh is read. Threads may pass distinct rows concurrently.
 ///
 /// Reads from vertices: `red green blue` with or without `alpha` (or `diffuse_red` ..., `r` ...;
-/// sRGB, integers divided by their type's greatest value), `nx ny nz`, and `s t`, `u v`, `texture_u
+/// sRGB, integers divided by their type's greatest value, floats 0 to 1 or 0 to 255: see
+/// plain_color_scale()), `nx ny nz`, and `s t`, `u v`, `texture_u
 /// texture_v` or `texture_s texture_t`. Reads from faces: colours if vertices have none, and the
 /// list `texcoord` with two numbers per corner if vertices have no coordinates.
 class PlyAttributes {
  public:
-  PlyAttributes(const MeshSource& source, const PlyHeader& header, const PlyFields& fields);
+  /// `float_scale` maps components of colours that are floats to 0..1.
+  PlyAttributes(const MeshSource& source, const PlyHeader& header, const PlyFields& fields,
+                float float_scale);
 
   const PlyColumns& vertex_columns() const { return vertex_; }
   const PlyColumns& face_columns() const { return face_; }
@@ -52,18 +56,23 @@ class PlyAttributes {
 
   void take_vertex(std::size_t index, const PlyRowValues& row);
   /// Returns the colour of a face, if faces have colours.
-  Rgba16 face_color(const PlyRowValues& row) const;
+  Rgba16 face_color(const PlyRowValues& row);
   /// Stores the values of triangle `index`, which joins three corners of a face. `texcoord` has u
   /// and v of the face's corners, or is empty.
   void take_triangle(std::size_t index, const Triangle& corners, Rgba16 face_color,
                      std::span<const float> texcoord);
 
-  /// Completes the appearance: corners, materials, the texture. Call it once, at the end. Throws
-  /// Error if the texture is outside the file's folder.
+  /// Counts a face that names a texture that does not exist. It has no texture.
+  void count_bad_texture() { bad_textures_.fetch_add(1, std::memory_order_relaxed); }
+  /// Returns the greatest component so far of the colours, if they are floats.
+  float greatest_float() const { return greatest_float_; }
+
+  /// Completes the appearance: corners, materials, the textures. Call it once, at the end. Throws
+  /// Error if a texture is outside the file's folder.
   Appearance finish(const Mesh& mesh, std::vector<std::string>& warnings);
 
  private:
-  Rgba16 color_of(const PlyColumns& columns, const PlyRowValues& row) const;
+  Rgba16 color_of(const PlyColumns& columns, const PlyRowValues& row);
   void read_materials(const Mesh& mesh, std::vector<std::string>& warnings);
   void ignore_alpha_that_hides_all();
 
@@ -71,6 +80,9 @@ class PlyAttributes {
   const PlyHeader& header_;
   PlyColumns vertex_, face_;
   std::array<float, 4> color_scales_{};  ///< Factors that map the components' type to 0..1.
+  bool has_float_colors_ = false;        ///< A component of the colours is a float.
+  std::atomic<float> greatest_float_{0};
+  std::atomic<std::size_t> bad_textures_{0};
   CountedVector<Rgba16> vertex_colors_;
   CountedVector<Vec3f> vertex_normals_;
   CountedVector<Vec2f> vertex_uvs_;

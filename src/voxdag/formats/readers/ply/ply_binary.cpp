@@ -38,11 +38,10 @@ class BinaryReader {
       if (&element == &fields_.face) faces_ = std::move(blocks);
     }
     resize_ply_vertices(body_, memory_, mesh_);
-    const bool all_finite = read_vertices();
+    read_vertices();
     source_.end_pass();
     resize_ply_triangles(body_, place_triangles(), memory_, mesh_);
     read_faces();
-    if (!all_finite) check_finite();
     return std::move(mesh_);
   }
 
@@ -88,8 +87,13 @@ class BinaryReader {
       const char* const start = p;
       for (; row < element.count && static_cast<std::size_t>(p - start) < kChunkBytes; ++row)
         p = layout.walk(p, end, header_.swaps_bytes(),
-                        [&](std::size_t run, const char*, std::size_t items) {
-                          if (run == corner_run && items > 2) block.triangles += items - 2;
+                        [&](std::size_t run, const char* fixed, std::size_t items) {
+                          if (run != corner_run) return;
+                          if (header_.has_strips)
+                            block.triangles +=
+                                count_strips(fixed + layout.runs[run].list_offset(), items);
+                          else if (items > 2)
+                            block.triangles += items - 2;
                         });
       block.rows.count = row - block.rows.first;
       block.rows.bytes = {start, static_cast<std::size_t>(p - start)};
@@ -97,6 +101,17 @@ class BinaryReader {
       source_.done_with(block.rows.bytes, "scan");
     }
     rest_ = {p, static_cast<std::size_t>(end - p)};
+  }
+
+  /// Returns the number of triangles of a list of strips.
+  std::size_t count_strips(const char* indices, std::size_t count) const {
+    const PlyType type = fields_.face.properties[fields_.indices].type;
+    PlyStrip strip;
+    std::size_t triangles = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      strip.add(load_int(type, indices + i * size_of(type), header_.swaps_bytes()),
+                [&](std::int64_t, std::int64_t, std::int64_t) { ++triangles; });
+    return triangles;
   }
 
   /// Sets the blocks' first triangles. Returns the number of all triangles.
@@ -109,15 +124,11 @@ class BinaryReader {
     return triangles;
   }
 
-  /// Returns whether all vertices are finite.
-  bool read_vertices() {
-    std::atomic<bool> all_finite{true};
+  void read_vertices() {
     for_each_chunk(source_, vertices_.parts, kNoLines, "read", [&](std::size_t i) {
       const PlyRows& rows = vertices_.blocks[i].rows;
-      if (!rows_.read_vertices(rows, std::span(mesh_.vertices).subspan(rows.first, rows.count)))
-        all_finite = false;
+      rows_.read_vertices(rows, std::span(mesh_.vertices).subspan(rows.first, rows.count));
     });
-    return all_finite;
   }
 
   void read_faces() {
@@ -130,14 +141,6 @@ class BinaryReader {
           ply_triangles(mesh_, block.first_triangle, block.first_triangle + block.triangles));
       rows_.read_faces(block.rows, faces);
     });
-  }
-
-  void check_finite() const {
-    const auto bad = find_bad_vertex(source_, mesh_);
-    if (!bad) return;
-    std::size_t i = vertices_.blocks.size() - 1;
-    while (vertices_.blocks[i].rows.first > *bad) --i;
-    throw_fault(source_, {rows_.find_vertex(vertices_.blocks[i].rows, *bad), kBadVertex}, kNoLines);
   }
 
   const PlyBody& body_;
@@ -210,15 +213,10 @@ class PlyMeshChunks final : public MeshChunks {
     });
   }
 
-  [[noreturn]] void throw_bad_vertex(std::uint64_t chunk, std::uint64_t index) const override {
-    const PlyRows rows = rows_of(chunk, vertices_);
-    throw_fault(source(), {rows_.find_vertex(rows, rows.first + index), kBadVertex}, kNoLines);
-  }
-
  private:
   /// Finds the rows of vertices and faces. Returns false if rows of an element differ in size.
   bool find_rows() {
-    if (header_.format == PlyFormat::kAscii) return false;
+    if (header_.format == PlyFormat::kAscii || header_.has_strips) return false;
     std::uint64_t at = header_.body;
     for (const PlyElement& element : header_.elements) {
       const RowLayout layout(element);

@@ -19,27 +19,25 @@ PlyBinaryRows::PlyBinaryRows(const PlyBody& body)
   face_values_ = used_columns(body.fields.face, face_layout_, body.attributes->face_columns());
 }
 
-bool PlyBinaryRows::read_vertices(const PlyRows& rows, std::span<Vec3f> vertices) const {
+void PlyBinaryRows::read_vertices(const PlyRows& rows, std::span<Vec3f> vertices) const {
   const char* p = rows.bytes.data();
   const char* const end = p + rows.bytes.size();
   PlyRowValues values(body_.source.work().memory);
   const bool has_values = body_.attributes != nullptr;
-  bool all_finite = true;
+  Vec3d point;
   for (std::size_t row = 0; row < rows.count; ++row) {
-    Vec3f& vertex = vertices[row];
     p = vertex_layout_.walk(
         p, end, swap_, [&](std::size_t run, const char* fixed, std::size_t items) {
           for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto& [place, type, slot] = axes_[axis];
             if (place.run == run)
-              vertex[static_cast<int>(axis)] = load_float(type, fixed + place.offset, swap_);
+              point[static_cast<int>(axis)] = load_double(type, fixed + place.offset, swap_);
           }
           if (has_values) take_values(vertex_values_, vertex_layout_, run, fixed, items, values);
         });
-    all_finite &= is_finite(vertex);
+    vertices[row] = body_.source.vertex(point);
     if (has_values) body_.attributes->take_vertex(rows.first + row, values);
   }
-  return all_finite;
 }
 
 void PlyBinaryRows::read_faces(const PlyRows& rows, PlyFaces& faces) const {
@@ -59,18 +57,10 @@ void PlyBinaryRows::read_faces(const PlyRows& rows, PlyFaces& faces) const {
           if (run != corners_.place.run || items < 3) return;
           const char* item = fixed + face_layout_.runs[run].list_offset();
           for (std::size_t n = 0; n < items; ++n, item += item_bytes)
-            faces.add_corner(load_int(corners_.type, item, swap_), item);
+            faces.add_index(load_int(corners_.type, item, swap_), item);
         });
     faces.finish_row(start);
   }
-}
-
-const char* PlyBinaryRows::find_vertex(const PlyRows& rows, std::size_t row) const {
-  const char* p = rows.bytes.data();
-  const char* const end = p + rows.bytes.size();
-  for (std::size_t i = rows.first; i < row; ++i)
-    p = vertex_layout_.walk(p, end, swap_, [](std::size_t, const char*, std::size_t) {});
-  return p;
 }
 
 PlyBinaryRows::Column PlyBinaryRows::column(const PlyElement& element, const RowLayout& layout,

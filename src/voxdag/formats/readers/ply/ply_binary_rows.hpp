@@ -25,12 +25,10 @@ class PlyBinaryRows {
   explicit PlyBinaryRows(const PlyBody& body);
 
   /// Reads vertices, and passes their other values to the attributes. `vertices` has one for each
-  /// row. Returns whether all are finite.
-  bool read_vertices(const PlyRows& rows, std::span<Vec3f> vertices) const;
+  /// row.
+  void read_vertices(const PlyRows& rows, std::span<Vec3f> vertices) const;
   /// Reads faces. Throws Fault for vertices and materials that do not exist.
   void read_faces(const PlyRows& rows, PlyFaces& faces) const;
-  /// Returns the start of a row of vertices. `row` counts the element's rows.
-  const char* find_vertex(const PlyRows& rows, std::size_t row) const;
 
  private:
   /// A property's place and type.

@@ -157,6 +157,16 @@ class PlyHeaderParser {
       if (element.name == "face") header_.face = static_cast<int>(i);
       check_size(element);
     }
+    for (std::size_t i = 0; i < header_.elements.size(); ++i)
+      if (is_strips(header_.elements[i]) &&
+          (header_.face < 0 || header_.elements[header_.face].count == 0)) {
+        header_.face = static_cast<int>(i);
+        header_.has_strips = true;
+      }
+  }
+
+  static bool is_strips(const PlyElement& element) {
+    return element.name == "tristrips" && element.count > 0;
   }
 
   void check_vertices() {
@@ -172,8 +182,8 @@ class PlyHeaderParser {
 
   void check_mesh() {
     for (const PlyElement& element : header_.elements)
-      if (element.name == "tristrips" && element.count > 0)
-        fail("PLY with triangle strips: save it with a 'face' element");
+      if (is_strips(element) && !header_.has_strips)
+        fail("PLY with faces and triangle strips: save it with faces only");
     if (header_.elements[header_.vertex].count >= std::numeric_limits<std::uint32_t>::max())
       fail("the mesh has more than 4,294,967,294 vertices");
     if (header_.face < 0) fail("PLY without a 'face' element: there is no surface to read");
@@ -184,6 +194,11 @@ class PlyHeaderParser {
     const PlyProperty& list = face.properties[indices];
     if (!list.count_type || !is_integer(list.type))
       fail("the vertex indices of PLY faces must be a list of integers");
+    if (header_.textures.size() < 2 || !header_.materials.empty() || face.find({"texnumber"}) < 0)
+      return;
+    header_.has_texture_numbers = true;
+    header_.materials = header_.textures;
+    header_.materials.emplace_back();
   }
 
   /// Refuses a count that is too large for the rest of the file, before memory is reserved for it.

@@ -54,7 +54,10 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
   CountedVector<std::string_view> materials;  ///< Comments `material NUMBER NAME`, by number.
   CountedVector<std::string_view> textures;   ///< Comments `TextureFile NAME`.
-  std::size_t body = 0;                       ///< Offset of the first byte after the header.
+  /// Faces name one of several textures. Then `materials` are the textures, and one without a name.
+  bool has_texture_numbers = false;
+  bool has_strips = false;  ///< `face` is element `tristrips`: lists of strips, which -1 separates.
+  std::size_t body = 0;     ///< Offset of the first byte after the header.
 
   /// Returns whether the bytes of values are in another order than this machine's.
   bool swaps_bytes() const {
@@ -62,7 +65,7 @@ struct PlyHeader {
   }
 
   int vertex = -1;  ///< Index of element `vertex`; always in range after parse_ply_header().
-  int face = -1;    ///< Index of element `face`; always in range if the use is kMesh.
+  int face = -1;    ///< Index of element `face` or `tristrips`; in range if the use is kMesh.
 };
 
 /// The parts of a file that a reader wants.
@@ -84,7 +87,9 @@ struct PlyFields {
         face(header.elements[header.face]),
         axes{vertex.find({"x"}), vertex.find({"y"}), vertex.find({"z"})},
         indices(face.find({"vertex_indices", "vertex_index"})),
-        material(header.materials.empty() ? -1 : face.find({"material_index"})) {
+        material(header.materials.empty()
+                     ? -1
+                     : face.find({header.has_texture_numbers ? "texnumber" : "material_index"})) {
     if (material >= 0) {
       const PlyProperty& property = face.properties[material];
       if (property.count_type || !is_integer(property.type)) material = -1;

@@ -1,6 +1,7 @@
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 
 #include "voxdag/formats/readers/named_files.hpp"
+#include "voxdag/formats/readers/plain_colors.hpp"
 #include "voxdag/formats/readers/ply/ply_rows.hpp"
 
 namespace voxdag {
@@ -11,13 +12,24 @@ MeshWithAppearance read_ply(const MeshSource& source, ReadParts parts) {
   for (const std::string_view name : header.textures) files.report(source.folder / name);
   const PlyFields fields(header);
   std::optional<PlyAttributes> attributes;
-  if (parts == ReadParts::kMeshAndAppearance) attributes.emplace(source, header, fields);
-  PlyBody body{source, header, fields, attributes ? &*attributes : nullptr};
   MeshWithAppearance result;
   MemoryReservation memory(source.work().memory, 0);
-  result.mesh = header.format == PlyFormat::kAscii ? read_ply_ascii(body, memory)
-                                                   : read_ply_binary(body, memory);
-  if (attributes) result.appearance = attributes->finish(result.mesh, result.warnings);
+  const auto read = [&](float float_scale) {
+    result.mesh = {};
+    if (parts == ReadParts::kMeshAndAppearance)
+      attributes.emplace(source, header, fields, float_scale);
+    const PlyBody body{source, header, fields, attributes ? &*attributes : nullptr};
+    result.mesh = header.format == PlyFormat::kAscii ? read_ply_ascii(body, memory)
+                                                     : read_ply_binary(body, memory);
+  };
+  read(1);
+  if (!attributes) return result;
+  const float scale = plain_color_scale(attributes->greatest_float());
+  if (scale != 1) {
+    read(scale);
+    result.warnings.push_back(colors_to_255_warning(source.name));
+  }
+  result.appearance = attributes->finish(result.mesh, result.warnings);
   return result;
 }
 

@@ -7,16 +7,18 @@ namespace voxdag {
 
 /// Reads x, y and z of element `vertex` and the list `vertex_indices` (or `vertex_index`) of
 /// element `face`, in ascii and in both binary orders; ignores other elements and properties.
-/// Rounds coordinates of other types to the nearest float32. Cuts polygons with cut_polygon() and
-/// ignores those of fewer than three corners. The materials come from comments `material NUMBER
-/// NAME`, numbered from 0, and the face property `material_index`. In ascii, each row is one line.
+/// Without faces, reads the triangle strips of element `tristrips`, which -1 separates. Rounds
+/// coordinates of other types to the nearest float32. Cuts polygons with cut_polygon() and ignores
+/// those of fewer than three corners. The materials come from comments `material NUMBER NAME`,
+/// numbered from 0, and the face property `material_index`; without them, from several comments
+/// `TextureFile NAME` and the face property `texnumber`. In ascii, each row is one line.
 ///
 /// With its appearance: reads the properties that PlyAttributes lists; a comment `TextureFile NAME`
-/// names the colour texture of all materials.
+/// names the colour texture of all materials, or, with `texnumber`, that of one.
 ///
 /// Throws Error with the line (in a binary body with the byte): malformed headers and values,
-/// counts that need a longer file, truncation, references out of range, triangles with a vertex
-/// that is not finite, triangle strips. Throws Error if there are no triangles.
+/// counts that need a longer file, truncation, references out of range, faces beside triangle
+/// strips. Throws Error if there are no triangles.
 MeshWithAppearance read_ply(const MeshSource& source, ReadParts parts);
 
 /// Opens a binary PLY file in chunks. Returns null if it is not binary, if faces have other lists

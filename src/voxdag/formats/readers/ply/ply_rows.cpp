@@ -44,7 +44,7 @@ void throw_ply_index(std::int64_t index, std::uint64_t count, const char* item, 
                             " is out of range: " + std::to_string(count) + " " + items};
 }
 
-void PlyFaces::finish_row_with_attributes(const char* position) {
+void PlyFaces::finish_face_with_attributes(const char* position) {
   // The file's coordinates are two for each corner, or they are ignored.
   if (values.texcoord.size() != 2 * writer_.corners()) values.texcoord.clear();
   const Rgba16 color = body_.attributes->face_color(values);

@@ -43,6 +43,27 @@ inline std::uint32_t checked_ply_index(std::int64_t index, std::uint64_t count, 
   return static_cast<std::uint32_t>(index);
 }
 
+/// Divides a triangle strip into triangles. A negative index starts a new strip.
+struct PlyStrip {
+  std::int64_t a = -1, b = -1;  ///< The last two indices.
+  bool is_odd = false;
+
+  /// Calls body(a, b, c) with the triangle that an index completes, unless two corners are equal:
+  /// such triangles only join strips.
+  template <class Body>
+  void add(std::int64_t index, const Body& body) {
+    if (index < 0) {
+      *this = {};
+      return;
+    }
+    if (a >= 0 && a != b && b != index && index != a)
+      is_odd ? body(b, a, index) : body(a, b, index);
+    is_odd = a >= 0 && !is_odd;
+    a = b;
+    b = index;
+  }
+};
+
 /// The triangles that a run of faces becomes.
 struct PlyTriangles {
   std::size_t first = 0;  ///< Index of the first one in the mesh.
@@ -66,26 +87,41 @@ class PlyFaces {
 
   PlyRowValues values;  ///< Of the row. The reader sets them.
 
-  /// Adds a corner of the row's face. `position` is that of the index. Throws Fault if the vertex
-  /// does not exist, OverMemory, Cancelled.
-  void add_corner(std::int64_t vertex, const char* position) {
-    writer_.add_corner(checked_ply_index(vertex, vertices_.count, "vertex", "vertices", position));
+  /// Adds an index of the row's face or strips. `position` is that of the index. Throws Fault if
+  /// the vertex does not exist, OverMemory, Cancelled.
+  void add_index(std::int64_t vertex, const char* position) {
+    if (!body_.header.has_strips) return add_corner(vertex, position);
+    strip_.add(vertex, [&](std::int64_t a, std::int64_t b, std::int64_t c) {
+      for (const std::int64_t corner : {a, b, c}) add_corner(corner, position);
+      finish_face(position);
+    });
   }
   /// Throws Fault if the material does not exist.
   void set_material(std::int64_t material, const char* position) {
-    material_ = checked_ply_index(material, body_.header.materials.size(), "material", "materials",
-                                  position);
+    const std::uint64_t count = body_.header.materials.size();
+    if (body_.header.has_texture_numbers && static_cast<std::uint64_t>(material) + 1 >= count) {
+      if (body_.attributes != nullptr && material != -1) body_.attributes->count_bad_texture();
+      material = static_cast<std::int64_t>(count) - 1;  // that without a texture
+    }
+    material_ = checked_ply_index(material, count, "material", "materials", position);
   }
   /// Writes the face's triangles and starts the next row. Throws as FaceWriter::finish_face() does.
   void finish_row(const char* position) {
-    if (body_.attributes != nullptr) return finish_row_with_attributes(position);
-    writer_.finish_face(position, [this](std::size_t t, const Triangle&) { write_material(t); });
+    strip_ = {};
+    finish_face(position);
   }
   /// Throws Error if some triangles are not written.
   void check_full() const { writer_.check_full(); }
 
  private:
-  void finish_row_with_attributes(const char* position);
+  void add_corner(std::int64_t vertex, const char* position) {
+    writer_.add_corner(checked_ply_index(vertex, vertices_.count, "vertex", "vertices", position));
+  }
+  void finish_face(const char* position) {
+    if (body_.attributes != nullptr) return finish_face_with_attributes(position);
+    writer_.finish_face(position, [this](std::size_t t, const Triangle&) { write_material(t); });
+  }
+  void finish_face_with_attributes(const char* position);
   void write_material(std::size_t triangle) {
     if (!triangles_.materials.empty()) triangles_.materials[triangle] = material_;
   }
@@ -94,6 +130,7 @@ class PlyFaces {
   const AllVertices& vertices_;
   const PlyTriangles triangles_;
   FaceWriter writer_;
+  PlyStrip strip_;
   std::uint32_t material_ = 0;
 };
 

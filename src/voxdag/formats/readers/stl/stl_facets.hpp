@@ -29,18 +29,16 @@ inline std::uint32_t stl_facet_count(std::string_view bytes) {
   return load_stl_word(bytes.data() + 80);
 }
 
-/// Calls body(Vec3f) for each corner of a run of facets. Throws Fault for a vertex that is not
-/// finite.
+/// Calls body(Vec3f) for each corner of a run of facets.
 template <class Body>
-void parse_stl_binary(std::string_view facets, const Body& body) {
+void parse_stl_binary(const MeshSource& source, std::string_view facets, const Body& body) {
   for (std::size_t facet = 0; facet < facets.size(); facet += kStlFacetBytes)
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const char* p = facets.data() + facet + 12 * (corner + 1);
       const Vec3f position{std::bit_cast<float>(load_stl_word(p)),
                            std::bit_cast<float>(load_stl_word(p + 4)),
                            std::bit_cast<float>(load_stl_word(p + 8))};
-      if (!is_finite(position)) throw Fault{p, "vertex is not finite"};
-      body(position);
+      body(source.vertex(static_cast<Vec3d>(position)));
     }
 }
 
@@ -72,11 +70,11 @@ class StlTokens {
     p_ += word.size();
     return true;
   }
-  /// Skips the next word if it is a number and sets `value` to the nearest float32. Returns whether
-  /// it is.
-  bool take_number(float& value) {
+  /// Skips the next word if it is a number and sets `value` as parse_coordinate() does. Returns
+  /// whether it is.
+  bool take_coordinate(double origin, float& value) {
     skip_space();
-    const auto result = parse_float_prefix(p_, end_, value);
+    const auto result = parse_coordinate_prefix(p_, end_, origin, value);
     if (result == nullptr || (result != end_ && !is_space(*result))) return false;
     p_ = result;
     return true;
@@ -113,21 +111,28 @@ inline std::vector<std::string_view> split_facets(std::string_view text, std::si
   return parts;
 }
 
-/// Calls body(Vec3f) for each corner of a part from split_facets(). Throws Fault for text that
-/// breaks the grammar, for vertices that are not finite, and if the last part does not end its
-/// solid.
+/// Calls body(Vec3f) for each corner of a part from split_facets(). Returns how many words "solid"
+/// and "endsolid" are missing or doubled, and how many words such as "end loop" are split. Throws
+/// Fault for text that breaks the grammar otherwise.
 template <class Body>
-void parse_stl_text(std::string_view part, bool is_first, bool is_last, const Body& body) {
+std::size_t parse_stl_text(const MeshSource& source, std::string_view part, bool is_first,
+                           bool is_last, const Body& body) {
   StlTokens tokens(is_first ? without_byte_order_mark(part) : part);
+  std::size_t irregular = 0;
   const auto expect = [&](std::string_view word) {
     if (tokens.take(word)) return;
     const std::string_view token = tokens.next();
     if (token.empty()) throw Fault{token.data(), "the file ends inside a facet"};
     throw Fault{token.data(), "expected '" + std::string(word) + "', not " + in_quotes(token)};
   };
-  const auto number = [&] {
+  const auto expect_end = [&](std::string_view word) {
+    if (!tokens.take("end")) return expect(word);
+    ++irregular;
+    expect(word.substr(3));
+  };
+  const auto coordinate = [&](int axis) {
     float value = 0;
-    if (tokens.take_number(value)) return value;
+    if (tokens.take_coordinate(source.origin[axis], value)) return value;
     const std::string_view token = tokens.next();
     if (token.empty()) throw Fault{token.data(), "the file ends inside a facet"};
     throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
@@ -136,11 +141,11 @@ void parse_stl_text(std::string_view part, bool is_first, bool is_last, const Bo
   bool in_solid = !is_first;
   for (;;) {
     const std::string_view token = tokens.next();
-    if (token.empty()) {
-      if (is_last && in_solid) throw Fault{token.data(), "the file ends before 'endsolid'"};
-      return;
-    }
-    if (in_solid && same_word(token, "facet")) {
+    const bool is_split_end = same_word(token, "end") && tokens.take("solid");
+    if (token.empty()) return irregular + (is_last && in_solid ? 1 : 0);
+    if (same_word(token, "facet")) {
+      irregular += in_solid ? 0 : 1;
+      in_solid = true;
       expect("normal");
       for (int i = 0; i < 3; ++i) {  // The normal is unused: some writers put NaN there.
         if (tokens.next().empty()) throw Fault{token.data(), "the file ends inside a facet"};
@@ -149,16 +154,16 @@ void parse_stl_text(std::string_view part, bool is_first, bool is_last, const Bo
       expect("loop");
       for (int corner = 0; corner < 3; ++corner) {
         expect("vertex");
-        const float x = number(), y = number(), z = number();
-        if (!is_finite(Vec3f{x, y, z}))
-          throw Fault{token.data(), "the facet has a vertex that is not finite"};
+        const float x = coordinate(0), y = coordinate(1), z = coordinate(2);
         body(Vec3f{x, y, z});
       }
-      expect("endloop");
-      expect("endfacet");
-    } else if (same_word(token, in_solid ? "endsolid" : "solid")) {
+      expect_end("endloop");
+      expect_end("endfacet");
+    } else if (is_split_end || same_word(token, "endsolid") || same_word(token, "solid")) {
+      const bool starts = !is_split_end && same_word(token, "solid");
+      irregular += (starts == in_solid ? 1 : 0) + (is_split_end ? 1 : 0);
+      in_solid = starts;
       tokens.skip_line();
-      in_solid = !in_solid;
     } else {
       throw Fault{token.data(), std::string("expected ") +
                                     (in_solid ? "'facet' or 'endsolid'" : "'solid'") + ", not " +

@@ -12,12 +12,15 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
+#include "voxdag/formats/readers/plain_colors.hpp"
 #include "voxdag/formats/readers/stl/stl_facets.hpp"
+#include "voxdag/formats/readers/warnings.hpp"
 #include "voxdag/mesh/vertex_table.hpp"
 
 namespace voxdag {
@@ -142,24 +145,71 @@ class Welder {
 
 constexpr std::size_t kFacetsPerPart = 2048;  ///< About the number in a part of an ascii file.
 
-/// Returns the facets of a binary file in parts.
-std::vector<std::string_view> split_binary(const MeshSource& source) {
+/// Returns the facets of a binary file. Adds a warning if the size of the file does not match.
+std::string_view find_facets(const MeshSource& source, std::vector<std::string>& warnings) {
   if (source.bytes.size() < kStlHeaderBytes)
     throw source.error("not an STL file: it is not ASCII STL, and it is too short for binary STL");
-  std::size_t left = stl_facet_count(source.bytes);
-  const std::size_t room = (source.bytes.size() - kStlHeaderBytes) / kStlFacetBytes;
-  if (left > room)
-    throw source.error_at_byte(source.bytes.size(), "the file ends after " + std::to_string(room) +
-                                                        " of " + std::to_string(left) + " facets");
-  if (left == 0) throw source.error("STL with 0 facets: there is no surface to read");
-  std::vector<std::string_view> parts;
-  for (std::size_t offset = kStlHeaderBytes; left > 0;) {
-    const std::size_t count = std::min(left, kFacetsPerPart);
-    parts.push_back(source.bytes.substr(offset, count * kStlFacetBytes));
-    offset += count * kStlFacetBytes;
-    left -= count;
+  std::size_t count = stl_facet_count(source.bytes);
+  const std::string_view facets = source.bytes.substr(kStlHeaderBytes);
+  const std::size_t room = facets.size() / kStlFacetBytes;
+  const bool is_unset = count == 0 || count == 0xFFFFFFFF;  // Written before the facets were known.
+  if (is_unset && room > 0 && room * kStlFacetBytes == facets.size()) {
+    warnings.push_back(source.name + ": the header says " + counted(count, "facet") +
+                       ", but the size of the file is that of " + std::to_string(room) +
+                       ": all are read");
+    count = room;
   }
+  if (count > room)
+    throw source.error_at_byte(source.bytes.size(), "the file ends after " + std::to_string(room) +
+                                                        " of " + std::to_string(count) + " facets");
+  if (count == 0) throw source.error("STL with 0 facets: there is no surface to read");
+  const std::size_t size = count * kStlFacetBytes;
+  if (size < facets.size())
+    warnings.push_back(source.name + ": ignored " + counted(facets.size() - size, "byte") +
+                       " after the last facet");
+  return facets.substr(0, size);
+}
+
+/// Returns the facets of a binary file in parts.
+std::vector<std::string_view> split_binary(std::string_view facets) {
+  std::vector<std::string_view> parts;
+  for (std::size_t at = 0; at < facets.size(); at += kFacetsPerPart * kStlFacetBytes)
+    parts.push_back(facets.substr(at, kFacetsPerPart * kStlFacetBytes));
   return parts;
+}
+
+/// Reads the colours of the facets of a binary file. Adds none if it has none.
+void read_colors(const MeshSource& source, std::string_view facets, Appearance& appearance) {
+  constexpr std::string_view kMagics = "COLOR=";
+  const std::size_t count = facets.size() / kStlFacetBytes;
+  const auto word = [&](std::size_t facet) {
+    const char* const p = facets.data() + (facet + 1) * kStlFacetBytes - 2;
+    return static_cast<unsigned>(static_cast<unsigned char>(p[0]) | static_cast<unsigned char>(p[1])
+                                                                        << 8);
+  };
+  unsigned bits = 0;  // All that facets set.
+  for (std::size_t facet = 0; facet < count; ++facet) bits |= word(facet);
+  const std::size_t at = source.bytes.substr(0, 80).find(kMagics);
+  const bool is_magics = at != source.bytes.npos;
+  if (!is_magics && (bits & 0x8000) == 0) return;
+  Rgba16 other = to_rgba16(kDefaultColor, 1);
+  if (is_magics) {
+    const auto channel = [&](std::size_t i) {
+      return static_cast<float>(static_cast<unsigned char>(source.bytes[at + kMagics.size() + i])) /
+             255;
+    };
+    other = from_srgb({channel(0), channel(1), channel(2)});
+  }
+  const MemoryReservation counted(source.work().memory, 3 * count * sizeof(Rgba16));
+  appearance.colors.resize(3 * count);
+  parallel_for(count, 65536, [&](std::size_t facet) {
+    const unsigned code = word(facet);
+    const bool has_color = bits != 0 && (code & 0x8000) == (is_magics ? 0 : 0x8000);
+    const auto channel = [&](unsigned bit) { return static_cast<float>(code >> bit & 31) / 31; };
+    const Vec3f first_low{channel(0), channel(5), channel(10)};
+    const Vec3f rgb = is_magics ? first_low : Vec3f{first_low.z, first_low.y, first_low.x};
+    std::fill_n(appearance.colors.data() + 3 * facet, 3, has_color ? from_srgb(rgb) : other);
+  });
 }
 
 /// Welds the corners of each chunk.
@@ -201,10 +251,6 @@ class StlMeshChunks final : public MeshChunks {
     });
   }
 
-  [[noreturn]] void throw_bad_vertex(std::uint64_t, std::uint64_t) const override {
-    throw source().error("a vertex is not finite");  // for_each_corner() refuses these before
-  }
-
   bool repeats_vertices() const override { return true; }
 
  private:
@@ -215,7 +261,7 @@ class StlMeshChunks final : public MeshChunks {
                                                           (last - first) * kStlFacetBytes);
     // The caller's table: each corner may need a vertex and a slot; both arrays may double.
     const MemoryReservation table(source().work().memory, 3 * (last - first) * 44);
-    read(facets, kNoLines, [&] { parse_stl_binary(facets, body); });
+    read(facets, kNoLines, [&] { parse_stl_binary(source(), facets, body); });
   }
 
   std::uint64_t facets_, chunks_;
@@ -236,20 +282,36 @@ bool is_ascii_stl(std::string_view bytes) {
   return same_word(word, "facet") || same_word(word, "endsolid");
 }
 
-Mesh read_stl(const MeshSource& source) {
+MeshWithAppearance read_stl(const MeshSource& source, ReadParts parts) {
   if (source.bytes.empty()) throw source.error("the file is empty");
-  std::string_view head = without_byte_order_mark(source.bytes).substr(0, 4096);
-  const bool starts_as_text = same_word(StlTokens(head).next(), "solid");
+  const bool has_appearance = parts == ReadParts::kMeshAndAppearance;
+  MeshWithAppearance read;
+  const std::string_view head = without_byte_order_mark(source.bytes).substr(0, 512);
+  const bool starts_as_text =
+      same_word(StlTokens(head).next(), "solid") && head.find('\0') == head.npos;
   if (starts_as_text && !is_exact_binary_stl(source.bytes)) {
-    const std::vector<std::string_view> parts = split_facets(source.bytes, kChunkBytes / 2);
+    const std::vector<std::string_view> texts = split_facets(source.bytes, kChunkBytes / 2);
+    std::vector<std::size_t> irregular(texts.size());
     const auto visit = [&](std::size_t i, const auto& body) {
-      parse_stl_text(parts[i], i == 0, i + 1 == parts.size(), body);
+      irregular[i] = parse_stl_text(source, texts[i], i == 0, i + 1 == texts.size(), body);
     };
-    return Welder(source, parts, line_end_of(source.bytes), visit).weld();
+    read.mesh = Welder(source, texts, line_end_of(source.bytes), visit).weld();
+    const std::size_t words = std::accumulate(irregular.begin(), irregular.end(), std::size_t{0});
+    if (words > 0)
+      read.warnings.push_back(source.name + ": " + counted(words, "keyword") +
+                              " missing, doubled or split: 'solid', 'endsolid', 'endloop' or "
+                              "'endfacet'");
+  } else {
+    const std::string_view facets = find_facets(source, read.warnings);
+    const std::vector<std::string_view> texts = split_binary(facets);
+    const auto visit = [&](std::size_t i, const auto& body) {
+      parse_stl_binary(source, texts[i], body);
+    };
+    read.mesh = Welder(source, texts, kNoLines, visit).weld();
+    if (has_appearance) read_colors(source, facets, read.appearance);
   }
-  const std::vector<std::string_view> parts = split_binary(source);
-  const auto visit = [&](std::size_t i, const auto& body) { parse_stl_binary(parts[i], body); };
-  return Welder(source, parts, kNoLines, visit).weld();
+  if (has_appearance) add_plain_materials(source, read);
+  return read;
 }
 
 std::unique_ptr<MeshChunks> open_stl_chunks(MappedFile file, const std::filesystem::path& path,
