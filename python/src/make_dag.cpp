@@ -8,6 +8,7 @@
 #include "dag.hpp"
 #include "run_work.hpp"
 #include "voxdag/builders/attributes/build_attributes.hpp"
+#include "voxdag/builders/attributes/cut_alpha.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/solid/solid_settings.hpp"
 #include "voxdag/builders/voxelize/grid_request.hpp"
@@ -64,6 +65,10 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
   DagAttributes attributes;
   if (colors) {
     const SurfaceShading shading(mesh, source.appearance, nullptr, work);
+    if (auto cut = cut_alpha(mesh, metadata.grid, dag.view(), shading, work)) {
+      dag = std::move(*cut);
+      metadata.build["alpha"] = "cut";
+    }
     AttributeOptions options;
     options.colors = true;
     options.finest_level = metadata.grid.levels;

@@ -155,14 +155,18 @@ void PlyAttributes::read_materials(const Mesh& mesh, std::vector<std::string>& w
   if (header_.textures.size() > 1 && has_uvs)
     warnings.push_back(source_.name + ": only the first of " +
                        std::to_string(header_.textures.size()) + " textures is used");
-  const bool is_textured = has_uvs && !header_.textures.empty();
-  if (is_textured) {
-    const std::string_view name = header_.textures[0];
-    const NamedFiles files(source_);
-    const std::filesystem::path path =
-        files.find(source_.folder, name, {source_.name, "comment TextureFile"});
-    appearance_.images.push_back({printable_path(source_.folder, name), path, {}});
-  }
+  bool is_textured = has_uvs && !header_.textures.empty();
+  if (is_textured) try {
+      const std::string_view name = header_.textures[0];
+      const NamedFiles files(source_);
+      const std::filesystem::path path =
+          files.find(source_.folder, name, {source_.name, "comment TextureFile"});
+      appearance_.images.push_back({printable_path(source_.folder, name), path, {}});
+      if (auto warning = files.warning(source_.name)) warnings.push_back(std::move(*warning));
+    } catch (const Error& error) {
+      warnings.push_back(std::string(error.what()) + ": the texture is ignored");
+      is_textured = false;
+    }
   const int components = std::max(vertex_.color_components, face_.color_components);
   for (Material& material : materials) {
     if (is_textured) material.color_map.image = 0;
