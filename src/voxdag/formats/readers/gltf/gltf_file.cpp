@@ -8,9 +8,9 @@
 namespace voxdag {
 namespace {
 
-constexpr std::array kArrayNames = {"buffers", "bufferViews", "accessors", "meshes",
-                                    "nodes",   "scenes",      "skins",     "materials",
-                                    "images",  "textures",    "samplers"};
+constexpr std::array kArrayNames = {"buffers",  "bufferViews", "accessors", "meshes",
+                                    "nodes",    "scenes",      "materials", "images",
+                                    "textures", "samplers",    "skins"};
 
 /// The extensions that are read.
 constexpr std::string_view kReadExtensions[] = {"EXT_mesh_gpu_instancing",
@@ -59,7 +59,7 @@ bool is_among(const std::string_view (&names)[n], std::string_view name) {
   return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
-/// Returns whether an array does not affect geometry. A malformed one counts as empty.
+/// Returns whether the array may be malformed, which counts as empty.
 bool is_optional(GltfArray array) { return array >= GltfArray::kImages; }
 
 std::uint32_t load_u32(std::string_view bytes, std::size_t offset) {

@@ -22,11 +22,11 @@ enum class GltfArray {
   kMeshes,
   kNodes,
   kScenes,
-  kSkins,
   kMaterials,
   kImages,
   kTextures,
-  kSamplers
+  kSamplers,
+  kSkins
 };
 
 class GltfFile {
