@@ -136,10 +136,11 @@ TEST(DecodeImage, TgaPlainAndWithRuns) {
 }
 
 TEST(DecodeImage, BmpOf24Bits) {
-  const auto bytes = joined(
-      {'B', 'M', 70, 0, 0, 0, 0, 0,  0, 0, 54, 0, 0, 0, 40, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 1,
-       0,   24,  0,  0, 0, 0, 0, 16, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0},
-      {0, 0, 255, 0, 255, 0, 0, 0, 255, 0, 0, 255, 255, 255});
+  auto bytes = joined({'B', 'M'}, {70, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0,
+                                   0,  0, 2, 0, 0, 0, 2, 0, 0,  0, 1, 0, 24});
+  bytes.resize(54);
+  const auto pixels = joined({0, 0, 255, 0, 255, 0, 0, 0}, {255, 0, 0, 255, 255, 255});
+  bytes.insert(bytes.end(), pixels.begin(), pixels.end());
   EXPECT_EQ(pixels_of(decode_image(bytes, "a.bmp")), kFourColors);
   expect_truncations_are_refused(bytes);
 }

@@ -52,12 +52,11 @@ std::uint64_t bmp_bytes(std::span<const std::uint8_t> bytes, std::uint64_t width
 std::optional<DecodedImage> decode_tga_or_bmp(std::span<const std::uint8_t> bytes,
                                               const std::string& name,
                                               const ImageOptions& options) {
-  constexpr std::size_t kLeastHeader = 30;
   const bool is_bmp = bytes.size() > 2 && bytes[0] == 'B' && bytes[1] == 'M';
   const char* const kind = is_bmp ? "BMP" : "TGA";
   const auto size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
-  if (bytes.size() < kLeastHeader ||
+  if (bytes.size() < (is_bmp ? 30u : 18u) ||
       stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
     if (!is_bmp) return std::nullopt;
     throw Error(name, "header", "this kind of BMP image is not read");

@@ -68,10 +68,10 @@ TEST(CutAlpha, MemoryIsCountedUntilItReturns) {
   const HalfVisible of;
   const SurfaceShading shading(of.mesh, of.appearance);
   MemoryBudget memory;
-  cut_alpha(of.mesh, of.grid, of.dag.view(), shading, {&memory, nullptr});
+  cut_alpha(of.mesh, of.grid, of.dag.view(), shading, &memory);
   EXPECT_EQ(memory.used(), 0u);
   MemoryBudget small(1 << 10);
-  EXPECT_THROW(cut_alpha(of.mesh, of.grid, of.dag.view(), shading, {&small, nullptr}), OverMemory);
+  EXPECT_THROW(cut_alpha(of.mesh, of.grid, of.dag.view(), shading, &small), OverMemory);
 }
 
 }  // namespace

@@ -139,8 +139,8 @@ class SceneFinder {
         std::copy(floats.begin(), floats.end(), to.begin());
         return std::span<const double>(to);
       };
-      std::array<double, 3> translation, scale;
-      std::array<double, 4> turn;
+      std::array<double, 3> translation{}, scale{};
+      std::array<double, 4> turn{};
       add(transform *
           of_parts(values(t, translation), values(r, turn), values(s, scale), instancing));
     }

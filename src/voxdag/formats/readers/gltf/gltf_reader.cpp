@@ -37,11 +37,10 @@ class GltfReader {
     if (has_appearance_) {
       read_gltf_materials(file_, mesh_, appearance_, warnings_);
       result.appearance = std::move(appearance_);
-    } else {
-      report_gltf_images(file_);
     }
     if (auto warning = file_.named_files().warning(source_.name))
       warnings_.add(std::move(*warning));
+    if (!has_appearance_) report_gltf_images(file_);
     result.warnings = warnings_.take(source_.name);
     result.mesh = std::move(mesh_);
     return result;
