@@ -21,6 +21,9 @@ foreach(package ${VOXDAG_LIBRARY_PACKAGES})
   unset(CMAKE_MESSAGE_LOG_LEVEL)
 endforeach()
 
+find_path(VOXDAG_STB_INCLUDE stb/stb_image.h REQUIRED)  # only headers
+mark_as_advanced(VOXDAG_STB_INCLUDE)
+
 if("assimp" IN_LIST VOXDAG_LIBRARY_PACKAGES)
   find_package(assimp QUIET)
   if(NOT assimp_FOUND)

@@ -6,8 +6,8 @@ voxdag_packages=(
   # tools
   ca-certificates g++ cmake ninja-build
   # the library
-  libtbb-dev libhwy-dev libpng-dev libjpeg-dev libopenexr-dev libfast-float-dev
-  nlohmann-json3-dev libxxhash-dev libassimp-dev libembree-dev
+  libtbb-dev libhwy-dev libpng-dev libjpeg-dev libwebp-dev libstb-dev libopenexr-dev
+  libfast-float-dev nlohmann-json3-dev libxxhash-dev libdraco-dev libmeshoptimizer-dev libassimp-dev libembree-dev
   # the command line
   libcli11-dev libfmt-dev libcpp-httplib-dev zlib1g-dev
 )

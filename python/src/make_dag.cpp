@@ -8,6 +8,7 @@
 #include "dag.hpp"
 #include "run_work.hpp"
 #include "voxdag/builders/attributes/build_attributes.hpp"
+#include "voxdag/builders/attributes/cut_alpha.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/solid/solid_settings.hpp"
 #include "voxdag/builders/voxelize/grid_request.hpp"
@@ -53,8 +54,8 @@ std::optional<SolidRule> rule_of(const py::object& solid) {
 
 /// Builds the DAG of a mesh, as `voxdag build` does.
 DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
-                      const std::optional<SolidRule>& solid, bool colors, const std::string& name,
-                      Work work) {
+                      const std::optional<SolidRule>& solid, bool colors, bool cuts_alpha,
+                      const std::string& name, Work work) {
   const Mesh& mesh = source.mesh;
   VdagMetadata metadata;
   metadata.grid = grid_for(mesh, grid);
@@ -66,6 +67,12 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
   DagAttributes attributes;
   if (colors) {
     const SurfaceShading shading(mesh, source.appearance, nullptr, work);
+    auto cut =
+        cuts_alpha ? cut_alpha(mesh, metadata.grid, dag.view(), shading, work) : std::nullopt;
+    if (cut) {
+      dag = std::move(*cut);
+      metadata.build["alpha"] = "cut";
+    }
     AttributeOptions options;
     options.colors = true;
     options.finest_level = metadata.grid.levels;
@@ -125,13 +132,14 @@ DagPointer build(const Array<double>& vertices, const Array<std::int64_t>& faces
   if (rule && colors) throw py::value_error("a solid has no colours inside: leave out colors");
   const MeshWithAppearance source = mesh_of(vertices, faces, colors);
   return run_work([&](Work work) {
-    return build_mesh(source, grid, rule, colors.has_value(), "arrays", work);
+    return build_mesh(source, grid, rule, colors.has_value(), false, "arrays", work);
   });
 }
 
 DagPointer build_file(const std::filesystem::path& path, std::optional<std::int64_t> resolution,
                       std::optional<double> pitch, std::optional<Bounds> bounds,
-                      const py::object& solid, bool colors) {
+                      const py::object& solid, bool colors, const std::string& alpha) {
+  if (alpha != "cut" && alpha != "keep") throw py::value_error("alpha must be \"cut\" or \"keep\"");
   const GridRequest grid = grid_request(resolution, pitch, bounds);
   const std::optional<SolidRule> rule = rule_of(solid);
   if (rule && colors) throw py::value_error("a solid has no colours inside: leave out colors");
@@ -143,7 +151,7 @@ DagPointer build_file(const std::filesystem::path& path, std::optional<std::int6
     else
       source.mesh = read_mesh(path, options);
     return with_file_name(path.string(), [&] {
-      return build_mesh(source, grid, rule, colors, path.filename().string(), work);
+      return build_mesh(source, grid, rule, colors, alpha == "cut", path.filename().string(), work);
     });
   });
 }
@@ -252,7 +260,7 @@ void add_makers(py::module_& module) {
              py::arg("solid") = none, py::arg("colors") = none);
   module.def("build_mesh", &build_file, py::arg("path"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
-             py::arg("solid") = none, py::arg("colors") = false);
+             py::arg("solid") = none, py::arg("colors") = false, py::arg("alpha") = "cut");
   module.def("from_points", &from_points, py::arg("points"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
              py::arg("colors") = none);

@@ -395,5 +395,43 @@ TEST_F(AttributesCommand, TheWireFormIsSmallerAndGoesThroughEveryCommand) {
   EXPECT_NE(broken.err.find("checksum"), std::string::npos) << broken.err;
 }
 
+/// A square whose texture is red and visible in its left half only.
+TEST_F(AttributesCommand, AlphaCutsVoxelsOrKeepsThemWithTheNearestVisibleColour) {
+  std::string tga("\0\0\2\0\0\0\0\0\0\0\0\0\x40\0\x40\0\x20\x08", 18);
+  for (int i = 0; i < 64 * 64; ++i)
+    tga += i % 64 < 32 ? std::string("\0\0\xFF\xFF", 4) : std::string(4, '\0');
+  write_text(dir_ / "leaf.tga", tga);
+  write_text(dir_ / "leaf.mtl", "newmtl leaf\nmap_Kd leaf.tga\n");
+  write_text(dir_ / "leaf.obj",
+             "mtllib leaf.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
+             "vt 0 1\nusemtl leaf\nf 1/1 2/2 3/3 4/4\n");
+  const auto voxels = [&](const std::string& name, std::vector<std::string> options) {
+    options.insert(options.begin(),
+                   {"build", dir_ / "leaf.obj", "-r", "256", "-o", dir_ / name, "--json"});
+    const ProcessResult result = run_voxdag(options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const ProcessResult check = run_voxdag({"verify", dir_ / name, "--mesh", dir_ / "leaf.obj"});
+    EXPECT_EQ(check.status, 0) << check.err;
+    return nlohmann::json::parse(result.out)["voxels"].get<int>();
+  };
+  EXPECT_EQ(voxels("shape.vdag", {}), 256 * 256);
+  EXPECT_EQ(voxels("kept.vdag", {"--color", "--color-bound", "0", "--alpha", "keep"}), 256 * 256);
+  // The filter mixes texels at the borders of the visible half, two of which are at the square's.
+  const int cut = voxels("cut.vdag", {"--color"});
+  EXPECT_EQ(cut, voxels("cut_shape.vdag", {"--alpha", "cut"}));
+  EXPECT_NEAR(cut, 128 * 256, 12 * 256);
+  ASSERT_EQ(run_voxdag({"export", dir_ / "kept.vdag", "-o", dir_ / "kept.npy"}).status, 0);
+  constexpr std::size_t kRow = 15;  // a voxel's three numbers and its colour
+  NpyReader reader(dir_ / "kept.npy", "[('voxel', '<i4', (3,)), ('color', '|u1', (3,))]", {}, kRow);
+  std::string row(kRow, '\0');
+  for (std::uint64_t i = 0; i < reader.rows(); ++i) {
+    reader.read_rows(row.data(), 1);
+    ASSERT_EQ(row.substr(12), std::string("\xFF\0\0", 3)) << i;
+  }
+  expect_failure(run_voxdag({"build", dir_ / "leaf.obj", "-r", "64", "-o", dir_ / "a.vdag",
+                             "--solid", "--alpha", "cut"}),
+                 2, "--solid fills the whole surface");
+}
+
 }  // namespace
 }  // namespace voxdag::cli

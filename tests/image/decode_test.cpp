@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <webp/encode.h>
 
 #include "support/temp_dir.hpp"
 #include "support/test_png.hpp"
@@ -100,16 +101,88 @@ TEST(DecodeImage, OnlyRegularFilesAreReadAndPipesAreNotWaitedFor) {
   }
 }
 
+std::vector<std::uint8_t> joined(std::initializer_list<int> header,
+                                 std::initializer_list<int> pixels) {
+  std::vector<std::uint8_t> bytes;
+  for (const auto& part : {header, pixels})
+    for (const int byte : part) bytes.push_back(static_cast<std::uint8_t>(byte));
+  return bytes;
+}
+
+void expect_truncations_are_refused(const std::vector<std::uint8_t>& bytes) {
+  for (std::size_t n = 0; n < bytes.size(); ++n) {
+    const std::vector<std::uint8_t> cut(bytes.begin(),
+                                        bytes.begin() + static_cast<std::ptrdiff_t>(n));
+    EXPECT_THROW(decode_image(cut, "cut"), Error) << n << " of " << bytes.size();
+  }
+}
+
+/// Red, green, blue and white, from the lower left.
+const std::vector<std::uint16_t> kFourColors = {0,     0, 65535, 65535, 65535, 65535, 65535, 65535,
+                                                65535, 0, 0,     65535, 0,     65535, 0,     65535};
+
+TEST(DecodeImage, TgaPlainAndWithRuns) {
+  const std::initializer_list<int> plain = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 24, 0};
+  const auto bytes = joined(plain, {0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255});
+  EXPECT_EQ(pixels_of(decode_image(bytes, "a.tga")), kFourColors);
+  expect_truncations_are_refused(bytes);
+  const std::initializer_list<int> runs = {0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 32, 8};
+  const auto packed = joined(runs, {1, 0, 0, 255, 255, 0, 255, 0, 9, 129, 1, 2, 3, 4});
+  const DecodedImage image = decode_image(packed, "a.tga");
+  EXPECT_TRUE(image.has_alpha());
+  EXPECT_EQ(image.pixel(1, 1), (DecodedImage::Rgba{0, 65535, 0, 9 * 257}));
+  EXPECT_EQ(image.pixel(1, 0), (DecodedImage::Rgba{3 * 257, 2 * 257, 257, 4 * 257}));
+  expect_truncations_are_refused(packed);
+}
+
+TEST(DecodeImage, BmpOf24Bits) {
+  auto bytes = joined({'B', 'M'}, {70, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0,
+                                   0,  0, 2, 0, 0, 0, 2, 0, 0,  0, 1, 0, 24});
+  bytes.resize(54);
+  const auto pixels = joined({0, 0, 255, 0, 255, 0, 0, 0}, {255, 0, 0, 255, 255, 255});
+  bytes.insert(bytes.end(), pixels.begin(), pixels.end());
+  EXPECT_EQ(pixels_of(decode_image(bytes, "a.bmp")), kFourColors);
+  expect_truncations_are_refused(bytes);
+}
+
+TEST(DecodeImage, WebpWithAlpha) {
+  const std::uint8_t rgba[] = {1, 2, 3, 255, 40, 50, 60, 128};
+  std::uint8_t* encoded = nullptr;
+  const std::size_t size = WebPEncodeLosslessRGBA(rgba, 2, 1, 8, &encoded);
+  const std::vector<std::uint8_t> bytes(encoded, encoded + size);
+  WebPFree(encoded);
+  const DecodedImage image = decode_image(bytes, "a.webp");
+  EXPECT_EQ(image.pixel(0, 0), (DecodedImage::Rgba{257, 2 * 257, 3 * 257, 65535}));
+  EXPECT_EQ(image.pixel(1, 0)[3], 128 * 257);
+  expect_truncations_are_refused(bytes);
+}
+
+TEST(DecodeImage, ManyPixelsInFewBytesCountBeforeTheyAreDecoded) {
+  std::vector<std::uint8_t> tga(18, 0);
+  tga[2] = 10;
+  tga[12] = tga[14] = 0xFF;
+  tga[13] = tga[15] = 0x3F;  // 16,383 x 16,383 pixels
+  tga[16] = 24;
+  for (int i = 0; i < 16383 * 128; ++i) tga.insert(tga.end(), {255, 1, 2, 3});
+  MemoryBudget memory(100 << 20);
+  EXPECT_THROW(decode_image(tga, "a.tga", {&memory, {}}), OverMemory);
+  EXPECT_EQ(memory.used(), 0u);
+}
+
 TEST(DecodeImage, OtherFormatsAreRefusedByName) {
   const TempDir dir;
-  write_text(dir / "a.tga", "no picture");
-  try {
-    read_image(dir / "a.tga");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.file(), (dir / "a.tga").string());
-    EXPECT_EQ(error.reason(), "neither a PNG nor a JPEG image");
-  }
+  const auto refused = [&](const std::string& bytes) {
+    write_text(dir / "a.tga", bytes);
+    try {
+      read_image(dir / "a.tga");
+      return std::string("read");
+    } catch (const Error& error) {
+      EXPECT_EQ(error.file(), (dir / "a.tga").string());
+      return error.reason();
+    }
+  };
+  EXPECT_EQ(refused("no picture"), "not an image: PNG, JPEG, WebP, BMP and TGA images are read");
+  EXPECT_EQ(refused("GIF89a..."), "a GIF image: PNG, JPEG, WebP, BMP and TGA images are read");
 }
 
 }  // namespace

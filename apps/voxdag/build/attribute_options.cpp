@@ -3,12 +3,24 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "cli/parse.hpp"
 #include "cli/usage_error.hpp"
 #include "voxdag/core/error.hpp"
 
 namespace voxdag::cli {
+
+namespace {
+
+/// Returns whether the text asks to cut.
+bool parse_cut(const std::string& text) {
+  if (text != "cut" && text != "keep")
+    throw std::invalid_argument(fmt::format("\"{}\" is neither cut nor keep", text));
+  return text == "cut";
+}
+
+}  // namespace
 
 void add_attribute_options(const Command& command, AttributeArguments& arguments,
                            const std::string& group) {
@@ -32,6 +44,12 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
           "two from 4 to the grid's resolution (default: the finest that is expected to fit into "
           "4 GiB and the memory limit)")
       .only_if(is_wanted, "without --color, --normal and --material-ids")
+      .in_group(group);
+  command
+      .parsed("--alpha", arguments.cut, parse_cut, "cut|keep",
+              "Voxels whose surface is transparent, by textures, materials or vertex colours. cut: "
+              "they are not set; keep: they are set, and have the nearest visible colour (default: "
+              "cut with --color, else keep). An ESVO never has them")
       .in_group(group);
   command
       .number("--color-bound", options.color_bound, NumberRange::from(0, 1), "DIFFERENCE",

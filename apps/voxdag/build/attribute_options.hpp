@@ -13,9 +13,12 @@ namespace voxdag::cli {
 struct AttributeArguments {
   AttributeOptions options;
   std::optional<int> levels;  ///< log2 of --attribute-resolution.
+  std::optional<bool> cut;    ///< Whether --alpha is `cut`.
 
   bool needs_shading() const { return options.colors || options.normals; }
   bool is_wanted() const { return needs_shading() || options.materials; }
+  /// Returns whether voxels that the alpha test removes are not set.
+  bool cuts_alpha() const { return cut.value_or(options.colors); }
   /// Throws UsageError if the attributes would be finer than a DAG of `dag_levels`.
   void check_levels(int dag_levels) const;
 };

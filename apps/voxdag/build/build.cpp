@@ -101,12 +101,15 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
     command.refuse_group(kDagOptions, "is for DAGs only, but the output is an ESVO (see --as)");
   else
     command.refuse_group(kEsvoOptions, "is for ESVOs only, but the output is a DAG (see --as)");
-  if (is_in_parts(arguments) && (arguments.solid || arguments.attributes.is_wanted() ||
-                                 arguments.compact || arguments.method != BuildMethod::kHashConsed))
+  if (is_in_parts(arguments) &&
+      (arguments.solid || arguments.attributes.is_wanted() || arguments.attributes.cuts_alpha() ||
+       arguments.compact || arguments.method != BuildMethod::kHashConsed))
     throw UsageError(
         "--work and --parts build the surface's voxels by --method hash: not with --solid, "
         "--color, "
-        "--normal, --material-ids, --compact or another method");
+        "--normal, --material-ids, --alpha cut, --compact or another method");
+  if (arguments.solid && arguments.attributes.cuts_alpha())
+    throw UsageError("--solid fills the whole surface: not with --alpha cut");
   arguments.access.outputs = {{"--output", arguments.output}};
   check_distinct(arguments.access.outputs, session);
   if (arguments.grid.levels.has_value() == arguments.grid.voxel_size.has_value())

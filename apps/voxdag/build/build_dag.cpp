@@ -7,6 +7,7 @@
 
 #include "build/build_arguments.hpp"
 #include "cli/stopwatch.hpp"
+#include "voxdag/builders/attributes/cut_alpha.hpp"
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/file/model/written_by.hpp"
 #include "voxdag/file/report/dag_report.hpp"
@@ -62,10 +63,10 @@ std::string table_of(const DagReport& dag, const StageSeconds& seconds) {
       human_seconds(seconds.write), human_count(rate), human_bytes(peak_resident_bytes()));
 }
 
-/// Reads the mesh, and its appearance if attributes are wanted.
+/// Reads the mesh, and its appearance if it is needed.
 MeshWithAppearance read_source(const BuildArguments& arguments, const MeshAccess& access,
                                Session& session) {
-  if (arguments.attributes.needs_shading())
+  if (arguments.attributes.needs_shading() || arguments.attributes.cuts_alpha())
     return read_mesh_file_with_appearance(session.subject, access, session);
   MeshWithAppearance source;
   source.mesh = read_mesh_file(session.subject, access, session);
@@ -125,7 +126,25 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
     result.memory = MemoryReservation(&memory, result.dag.view().bytes());
     seconds.solid = watch.lap();
   }
-  if (!has_attributes) free_source();
+  std::optional<SurfaceShading> shading;
+  if (arguments.attributes.needs_shading() || arguments.attributes.cuts_alpha()) {
+    std::vector<std::string> warnings;
+    shading.emplace(mesh, source.appearance, &warnings, work);
+    print_warnings(warnings, session);
+  }
+  if (arguments.attributes.cuts_alpha()) {
+    auto cut = cut_alpha(mesh, report.metadata.grid, result.dag.view(), *shading, work);
+    if (cut) {
+      result.dag = std::move(*cut);
+      result.memory = MemoryReservation(&memory, result.dag.view().bytes());
+      report.metadata.build["alpha"] = "cut";
+    }
+    seconds.attributes = watch.lap();
+  }
+  if (!has_attributes) {
+    shading.reset();
+    free_source();
+  }
 
   work.poll();
   const SvdagView view = result.dag.view();
@@ -138,16 +157,12 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   if (has_attributes) {
     watch.lap();
     const MemoryReservation dag_bytes(&memory, view.bytes());
-    std::vector<std::string> warnings;
-    std::optional<SurfaceShading> shading;
-    if (arguments.attributes.needs_shading())
-      shading.emplace(mesh, source.appearance, &warnings, work);
-    print_warnings(warnings, session);
     attributes = build_wanted_attributes(arguments.attributes, source, view,
                                          shading ? &*shading : nullptr, report.metadata, work);
-    seconds.attributes = watch.lap();
+    seconds.attributes += watch.lap();
+    shading.reset();
+    free_source();
   }
-  if (has_attributes) free_source();
   work.poll();
   report.attributes = sizes_of(attributes.view());
   if (arguments.compact) {

@@ -52,7 +52,7 @@ Option add_displace_option(const Command& command, DisplaceArguments& arguments)
   };
   return command.parsed(
       "--displace", arguments, parse, "TEXTURE:AMOUNT[:SCALE]",
-      "Displace the surface by a height texture (PNG, JPEG, or \"stone\", a built-in wall) by up "
+      "Displace the surface by a height texture (an image, or \"stone\", a built-in wall) by up "
       "to AMOUNT world units; the texture repeats every SCALE world units (default: it follows the "
       "texture coordinates)");
 }

@@ -14,6 +14,7 @@
 #include "inspect/verify_compact.hpp"
 #include "voxdag/algebra/combine.hpp"
 #include "voxdag/builders/attributes/check_attributes.hpp"
+#include "voxdag/builders/attributes/cut_alpha.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/dag/check_cover.hpp"
 #include "voxdag/builders/esvo/build/check_esvo.hpp"
@@ -165,6 +166,26 @@ std::vector<VerifyCheck> solid_checks(const VerifyArguments& arguments, const Da
   return checks;
 }
 
+/// Compares a DAG without the voxels that the alpha test removes with the mesh: its surface, and
+/// then what is left of it.
+std::vector<VerifyCheck> alpha_checks(const VerifyArguments& arguments, const DagModel& file,
+                                      const MeshWithAppearance& source, Session& session) {
+  const Work work = &session.progress;
+  const Svdag surface = build_svdag(source.mesh, file.grid(), {}, work).dag;
+  std::vector<VerifyCheck> checks = {
+      cover_check(arguments, surface.view(), file.grid(), source.mesh, session)};
+  if (checks[0].result != Result::kPassed) return checks;
+  const SurfaceShading shading(source.mesh, source.appearance, nullptr, work);
+  const auto cut = cut_alpha(source.mesh, file.grid(), surface.view(), shading, work);
+  const Svdag different =
+      combine(file.view(), (cut ? *cut : surface).view(), SetOperation::kSymmetric, work);
+  const std::uint64_t voxels = count_svdag(different.view()).voxels;
+  checks.push_back({"alpha", voxels > 0 ? Result::kFailed : Result::kPassed,
+                    fmt::format("{} voxels differ from the visible surface of {}",
+                                with_commas(voxels), arguments.mesh)});
+  return checks;
+}
+
 /// Compares the voxels and the attributes of a DAG with the mesh.
 std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, const VdagContainer& opened,
                                     Session& session) {
@@ -172,16 +193,18 @@ std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, const Vdag
     throw Error(session.subject, "", "--displace is for ESVOs only, but this file is a DAG");
   const DagModel file(opened, &session.progress);
   MeshWithAppearance source;
-  if (file.attributes().has_colors() || file.attributes().has_normals())
+  const bool is_cut = file.metadata().build.contains("alpha");
+  if (is_cut || file.attributes().has_colors() || file.attributes().has_normals())
     source = read_mesh_file_with_appearance(arguments.mesh, arguments.access, session);
   else
     source = without_appearance(read_mesh_file(arguments.mesh, arguments.access, session));
   if (file.metadata().build.contains("solid"))
     return solid_checks(arguments, file, source.mesh, session);
-  std::vector<VerifyCheck> checks = {
-      cover_check(arguments, file.view(), file.grid(), source.mesh, session)};
+  std::vector<VerifyCheck> checks =
+      is_cut ? alpha_checks(arguments, file, source, session)
+             : std::vector{cover_check(arguments, file.view(), file.grid(), source.mesh, session)};
   // If the voxels differ from the mesh, the attributes do too.
-  if (checks[0].result != Result::kPassed) return checks;
+  if (checks.back().result != Result::kPassed) return checks;
   for (VerifyCheck& check : attribute_checks(arguments, file, source, session))
     checks.push_back(std::move(check));
   return checks;

@@ -9,10 +9,11 @@
 
 namespace voxdag {
 
-/// Decodes a PNG or a JPEG; the first bytes decide which. Errors call the file `name`. Counts its
-/// memory before it allocates: the pixels, and for a progressive JPEG twice as many bytes in
-/// addition. Throws Error if the image is truncated, damaged or beyond the limits of
-/// image_limits.hpp, OverMemory, and passes exceptions of `options.poll` on.
+/// Decodes a PNG, JPEG, WebP, BMP or TGA; the first bytes decide which. Errors call the file
+/// `name`. Counts its memory before it allocates: the pixels, for a progressive JPEG twice as many
+/// bytes in addition, and for a WebP, BMP or TGA four bytes a pixel. Throws Error if the image is
+/// truncated, damaged or beyond the limits of image_limits.hpp, OverMemory, and passes exceptions
+/// of `options.poll` on.
 DecodedImage decode_image(std::span<const std::uint8_t> bytes, const std::string& name,
                           const ImageOptions& options = {});
 

@@ -7,8 +7,10 @@
 // jerror.h needs jpeglib.h before it.
 #include <jerror.h>
 
+#include <cstdlib>
 #include <exception>
 #include <string>
+#include <vector>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/image/image_limits.hpp"
@@ -27,6 +29,7 @@ struct JpegDecoder {
   jpeg_progress_mgr monitor{};
   std::jmp_buf escape;
   char message[JMSG_LENGTH_MAX] = {};
+  bool is_unsupported = false;  ///< The message is about a kind of JPEG, not about damage.
   const ImageOptions& options;
   std::exception_ptr thrown;  ///< Exception of options.poll, rethrown after the jump.
 
@@ -52,6 +55,10 @@ struct JpegDecoder {
   }
   [[noreturn]] void leave() {
     errors.format_message(reinterpret_cast<j_common_ptr>(&info), message);
+    const int code = errors.msg_code;
+    is_unsupported = code == JERR_ARITH_NOTIMPL || code == JERR_BAD_PRECISION ||
+                     code == JERR_COMPONENT_COUNT || code == JERR_CONVERSION_NOTIMPL ||
+                     code == JERR_SOF_UNSUPPORTED;
     std::longjmp(escape, 1);
   }
 
@@ -85,18 +92,33 @@ bool read_header(JpegDecoder& decoder, std::span<const std::uint8_t> bytes) {
   decoder.info.progress = &decoder.monitor;
   jpeg_mem_src(&decoder.info, bytes.data(), bytes.size());
   jpeg_read_header(&decoder.info, TRUE);
-  decoder.info.out_color_space =
-      decoder.info.jpeg_color_space == JCS_GRAYSCALE ? JCS_GRAYSCALE : JCS_RGB;
+  const J_COLOR_SPACE space = decoder.info.jpeg_color_space;
+  decoder.info.out_color_space = space == JCS_GRAYSCALE                   ? JCS_GRAYSCALE
+                                 : space == JCS_CMYK || space == JCS_YCCK ? JCS_CMYK
+                                                                          : JCS_RGB;
   jpeg_calc_output_dimensions(&decoder.info);
   return true;
 }
 
-bool read_rows(JpegDecoder& decoder, DecodedImage& image) {
+/// Converts a row of inks to red, green and blue.
+void convert_inks(const JSAMPLE* inks, bool is_inverted, JSAMPLE* rgb, JDIMENSION width) {
+  const int full = is_inverted ? 0 : 255;
+  for (JDIMENSION x = 0; x < width; ++x, inks += 4)
+    for (int c = 0; c < 3; ++c)
+      *rgb++ = static_cast<JSAMPLE>(
+          (std::abs(full - int{inks[c]}) * std::abs(full - int{inks[3]}) + 127) / 255);
+}
+
+/// Reads the rows. `inks` holds a row of inks, if the file has them.
+bool read_rows(JpegDecoder& decoder, DecodedImage& image, JSAMPLE* inks) {
   if (setjmp(decoder.escape)) return false;
   jpeg_start_decompress(&decoder.info);
   while (decoder.info.output_scanline < decoder.info.output_height) {
-    JSAMPROW row = image.row(static_cast<int>(decoder.info.output_scanline));
+    JSAMPROW pixels = image.row(static_cast<int>(decoder.info.output_scanline));
+    JSAMPROW row = inks != nullptr ? inks : pixels;
     jpeg_read_scanlines(&decoder.info, &row, 1);
+    if (inks != nullptr)
+      convert_inks(inks, decoder.info.saw_Adobe_marker, pixels, decoder.info.output_width);
   }
   jpeg_finish_decompress(&decoder.info);
   return true;
@@ -120,7 +142,10 @@ std::uint64_t coefficient_bytes(jpeg_decompress_struct& info) {
 
 [[noreturn]] void fail(const JpegDecoder& decoder, const std::string& name) {
   if (decoder.thrown) std::rethrow_exception(decoder.thrown);
-  throw Error(name, "", std::string("damaged JPEG file: ") + decoder.message);
+  throw Error(name, "",
+              std::string(decoder.is_unsupported ? "this kind of JPEG file is not read: "
+                                                 : "damaged JPEG file: ") +
+                  decoder.message);
 }
 
 }  // namespace
@@ -141,7 +166,9 @@ DecodedImage decode_jpeg(std::span<const std::uint8_t> bytes, const std::string&
   info.mem->max_memory_to_use = static_cast<long>(work_bytes + kJpegWorkBytes);
   DecodedImage image(static_cast<int>(info.output_width), static_cast<int>(info.output_height),
                      info.out_color_space == JCS_GRAYSCALE ? 1 : 3, 1, options.memory);
-  if (!read_rows(decoder, image)) fail(decoder, name);
+  std::vector<JSAMPLE> inks;
+  if (info.out_color_space == JCS_CMYK) inks.resize(4 * std::size_t{info.output_width});
+  if (!read_rows(decoder, image, inks.empty() ? nullptr : inks.data())) fail(decoder, name);
   return image;
 }
 

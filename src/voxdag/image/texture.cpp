@@ -41,6 +41,16 @@ std::uint16_t grey(const Rgba& pixel) {
   return static_cast<std::uint16_t>((pixel[0] + pixel[1] + pixel[2]) / 3);
 }
 
+/// Returns whether an image has no alpha channel, or one that is 1 everywhere.
+bool is_opaque(const DecodedImage& image, const ImageOptions& options) {
+  for (int y = 0; image.has_alpha() && y < image.height(); ++y) {
+    options.call_poll();
+    for (int x = 0; x < image.width(); ++x)
+      if (image.pixel(x, y)[3] != 65535) return false;
+  }
+  return true;
+}
+
 /// Makes a pyramid whose level 0 has the texels texel(x, y).
 template <class Pyramid, class MakeTexel>
 Pyramid make(const DecodedImage& image, TextureWraps wraps, const ImageOptions& options,
@@ -154,9 +164,10 @@ DecodedImage with_alpha_of(const DecodedImage& image, const DecodedImage& alpha,
   DecodedImage out(width, height, 4, 2, options.memory);
   for_each_stretched(image, width, height, options,
                      [&](int x, int y, const Rgba& rgba) { out.set_pixel(x, y, rgba); });
+  const bool has_alpha = !is_opaque(alpha, options);
   for_each_stretched(alpha, width, height, options, [&](int x, int y, const Rgba& rgba) {
     Rgba pixel = out.pixel(x, y);
-    pixel[3] = alpha.has_alpha() ? rgba[3] : grey(rgba);
+    pixel[3] = has_alpha ? rgba[3] : grey(rgba);
     out.set_pixel(x, y, pixel);
   });
   return out;

@@ -44,8 +44,9 @@ HeightTexture make_height_texture(const DecodedImage& image, TextureWraps wraps 
 /// pixels are unit vectors that point out of the surface.
 bool looks_like_normal_map(const DecodedImage& image, const ImageOptions& options = {});
 
-/// Returns `image` with the alpha channel of the image `alpha`, or with its grey values if it has
-/// no alpha channel. The smaller image is stretched to the size of the larger.
+/// Returns `image` with the alpha channel of the image `alpha`, or with its grey values if that
+/// image has no alpha channel or is opaque everywhere. The smaller image is stretched to the size
+/// of the larger.
 DecodedImage with_alpha_of(const DecodedImage& image, const DecodedImage& alpha,
                            const ImageOptions& options = {});
 

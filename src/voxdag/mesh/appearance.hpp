@@ -86,8 +86,10 @@ struct Material {
   float alpha = 1;              ///< Multiplies the alpha of texture and corners.
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5f;
-  TextureUse color_map;  ///< sRGB; its alpha channel is alpha unless there is an alpha_map.
-  TextureUse alpha_map;  ///< Alpha: the image's alpha channel if it has one, else its grey.
+  Vec3f emission{};         ///< Linear light that is added to the colour; multiplies emission_map.
+  TextureUse emission_map;  ///< sRGB. If it cannot be read, nothing is added.
+  TextureUse color_map;     ///< sRGB; its alpha channel is alpha unless there is an alpha_map.
+  TextureUse alpha_map;     ///< Alpha: the image's alpha channel if it has one, else its grey.
   TextureUse normal_map;
   NormalMapKind normal_kind = NormalMapKind::kTangentSpace;
   float normal_scale = 1;       ///< Factor on x and y of tangent-space normals, or on heights.

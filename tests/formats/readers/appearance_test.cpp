@@ -300,8 +300,25 @@ TEST_F(ReadAppearance, GltfNormalsTurnWithTheirNodes) {
   // Scaled by a half along x and mirrored along y: normals tilt in the opposite direction to the
   // surface.
   const auto result = read("a.gltf", gltf(R"("materials":[{}])", R"(,"scale":[0.5,-1,1])"));
-  EXPECT_EQ(result.appearance.normals, (std::vector<Vec3f>{{0, 0, 1}, {0, -1, 0}, {1, 0, 0}}));
+  EXPECT_EQ(result.appearance.normals, (std::vector<Vec3f>{{0, 0, 1}, {1, 0, 0}, {0, -1, 0}}));
+  EXPECT_EQ(result.mesh.triangles[0], (Triangle{0, 2, 1}));
   EXPECT_EQ(result.mesh.vertices[1], (Vec3f{0.5f, 0, 0}));
+}
+
+TEST_F(ReadAppearance, GltfMaterialsOfExtensionsAndTheirLight) {
+  const auto result = read("a.gltf", gltf(R"("materials":[{"emissiveFactor":[0.5,0,0.25],
+             "emissiveTexture":{"index":0},"extensions":{
+             "KHR_materials_pbrSpecularGlossiness":{"diffuseFactor":[0.5,1,0.25,0.75],
+             "diffuseTexture":{"index":1}},
+             "KHR_materials_emissive_strength":{"emissiveStrength":4}}}],
+             "textures":[{"source":0},{"source":9,"extensions":{"EXT_texture_webp":{"source":1}}}],
+             "images":[{"uri":"e.png"},{"uri":"w.webp"}])"));
+  const Material& m = result.appearance.materials[0];
+  EXPECT_EQ(m.base_color, (Vec3f{0.5f, 1, 0.25f}));
+  EXPECT_FLOAT_EQ(m.alpha, 0.75f);
+  EXPECT_EQ(m.color_map.image, 1);
+  EXPECT_EQ(m.emission, (Vec3f{2, 0, 1}));
+  EXPECT_EQ(m.emission_map.image, 0);
 }
 
 TEST_F(ReadAppearance, GltfPartsThatAreMalformedAreLeftOut) {

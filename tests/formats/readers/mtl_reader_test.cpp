@@ -98,6 +98,44 @@ TEST_F(ReadMtl, MalformedMtlStatementsAreWarningsThatNameTheReplacement) {
   }
 }
 
+TEST_F(ReadMtl, OpacityIsOfDOrElseOfTrUnlessThatWouldHideTheMaterial) {
+  const auto alpha_of = [&](const std::string& lines, std::size_t warnings) {
+    write("a.mtl", "newmtl m\n" + lines);
+    const auto result = read_mesh_with_appearance(
+        write("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl m\nf 1 2 3\n"));
+    EXPECT_EQ(result.warnings.size(), warnings) << lines;
+    EXPECT_EQ(result.appearance.materials[0].alpha_mode,
+              result.appearance.materials[0].alpha < 1 ? AlphaMode::kBlend : AlphaMode::kOpaque);
+    return result.appearance.materials[0].alpha;
+  };
+  EXPECT_EQ(alpha_of("Tr 0.25\n", 0), 0.75f);
+  EXPECT_EQ(alpha_of("Tr 1\n", 1), 1);
+  EXPECT_EQ(alpha_of("Tr 1\nd 1\n", 0), 1);
+  EXPECT_EQ(alpha_of("d 1\nTr 1\n", 0), 1);
+  EXPECT_EQ(alpha_of("d 0.5\nTr 0\n", 0), 0.5f);
+  EXPECT_EQ(alpha_of("d 0\n", 0), 0);
+  EXPECT_EQ(alpha_of("Tr 1\nnewmtl other\nd 1\n", 1), 1);
+}
+
+TEST_F(ReadMtl, TheAlphaOfAColourTextureIsAMask) {
+  write("a.mtl", "newmtl m\nd 1\nmap_Kd a.png\nnewmtl n\nmap_Kd a.png\nd 0.5\n");
+  const auto result =
+      read("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl m\nf 1 2 3\nusemtl n\nf 1 2 3\n");
+  EXPECT_EQ(result.appearance.materials[0].alpha_mode, AlphaMode::kMask);
+  EXPECT_EQ(result.appearance.materials[0].alpha_cutoff, 0.5f);
+  EXPECT_EQ(result.appearance.materials[1].alpha_mode, AlphaMode::kBlend);
+}
+
+TEST_F(ReadMtl, OptionsMayFollowTheName) {
+  write("a.mtl", "newmtl m\nmap_Kd a wall.png -s 2 3 1 -clamp on\nbump my -bm map.png\n");
+  const auto result = read("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl m\nf 1 2 3\n");
+  const Material& m = result.appearance.materials[0];
+  EXPECT_EQ(result.appearance.images[0].path, directory_.path() / "a wall.png");
+  EXPECT_EQ(m.color_map.uv.xx, 2);
+  EXPECT_EQ(m.color_map.wrap_u, TextureWrap::kClamp);
+  EXPECT_EQ(result.appearance.images[1].path, directory_.path() / "my -bm map.png");
+}
+
 TEST_F(ReadMtl, OneNumberOfKdIsForAllChannels) {
   write("a.mtl", "newmtl m\nKd 1 # white\nnewmtl n\nKd 0\n");
   const auto result = read("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl n\nf 1 2 3\n");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "formats/readers/appearance_files.hpp"
 #include "formats/readers/mesh_text.hpp"
@@ -51,10 +52,9 @@ class NamedFilesTest : public ReadAppearance {
 };
 
 TEST_F(NamedFilesTest, BuffersOutsideOfTheFolderAreErrors) {
-  const std::string absolute = path("secret/b.bin");
   for (const std::string& uri :
        {std::string("../secret/b.bin"), std::string("%2e%2e/secret/b.bin"),
-        std::string("..%2Fsecret/b.bin"), std::string("textures/../../secret/b.bin"), absolute}) {
+        std::string("..%2Fsecret/b.bin"), std::string("textures/../../secret/b.bin")}) {
     const fs::path file = gltf(uri);
     EXPECT_NE(outcome(file).find("a.gltf: buffers[0]: '"), std::string::npos) << uri;
     EXPECT_TRUE(outcome(file).ends_with("is outside of the folder of the mesh file")) << uri;
@@ -81,35 +81,104 @@ TEST_F(NamedFilesTest, NamesInsideOfTheFolderAreRead) {
     EXPECT_EQ(outcome(gltf(uri)), "0") << uri;
 }
 
-TEST_F(NamedFilesTest, ImagesOutsideOfTheFolderAreErrors) {
+TEST_F(NamedFilesTest, AnAbsoluteBufferIsTheOneOfItsNameBesideTheMesh) {
+  for (const std::string& uri :
+       {path("secret/b.bin"), std::string("C:\\\\x\\\\B.bin"), std::string("file:///c:/x/b.bin")}) {
+    EXPECT_EQ(outcome(gltf(uri)), "1") << uri;
+    std::vector<fs::path> named;
+    read_mesh(gltf(uri), {.named_files = &named});
+    EXPECT_EQ(named, std::vector{directory_.path() / "meshes/b.bin"});
+  }
+  fs::remove(directory_.path() / "meshes/b.bin");
+  EXPECT_EQ(outcome(gltf(path("secret/b.bin"))),
+            refused("a.gltf: buffers[0]", path("secret/b.bin")));
+  EXPECT_EQ(outcome(gltf("http://b.bin")), path("meshes/a.gltf") +
+                                               ": buffers[0]: 'http://b.bin' is not a file beside "
+                                               "the mesh");
+}
+
+/// Returns the only warning of reading a file.
+std::string only_warning(const fs::path& file) {
+  const std::vector<std::string> warnings = read_mesh_with_appearance(file).warnings;
+  EXPECT_EQ(warnings.size(), 1u);
+  return warnings.empty() ? "" : warnings[0];
+}
+
+TEST_F(NamedFilesTest, ImagesOutsideOfTheFolderAreWarnings) {
   const fs::path file =
       gltf("b.bin", R"(,"images":[{"uri":"textures/a.png"},{"uri":"%2e%2e/secret/a.png"}])");
-  EXPECT_EQ(outcome(file), refused("a.gltf: images[1]", "../secret/a.png"));
+  EXPECT_EQ(only_warning(file),
+            refused("a.gltf: images[1]", "../secret/a.png") + ": the image is ignored");
   EXPECT_EQ(outcome(file, {.allow_outside = true}), "0");
   EXPECT_NO_THROW(read_mesh(file));  // read_mesh() does not need the images.
 }
 
-TEST_F(NamedFilesTest, MtlFilesAndTheirTexturesOutsideOfTheFolderAreErrors) {
-  EXPECT_EQ(outcome(obj("../secret/m.mtl")), refused("a.obj: mtllib", "../secret/m.mtl"));
-  EXPECT_EQ(outcome(obj("..\\secret\\m.mtl")), refused("a.obj: mtllib", "../secret/m.mtl"));
+TEST_F(NamedFilesTest, MtlFilesAndTheirTexturesOutsideOfTheFolderAreWarnings) {
+  write("secret/other.mtl", "newmtl m\nKd 1 0 0\n");
+  const auto result = read_mesh_with_appearance(obj("../secret/other.mtl"));
+  ASSERT_EQ(result.warnings.size(), 2u);
+  EXPECT_EQ(result.warnings[0],
+            refused("a.obj: mtllib", "../secret/other.mtl") + ": its materials are grey");
+  EXPECT_EQ(result.appearance.materials[0].base_color, kDefaultColor);
   EXPECT_EQ(outcome(obj("m.mtl")), "0");
   write("meshes/textures/t.mtl", "newmtl m\nKd 1 1 1\nmap_Kd ../wall.png\n");
   EXPECT_EQ(outcome(obj("textures/t.mtl")), "0");
   write("meshes/textures/t.mtl", "newmtl m\nKd 1 1 1\nmap_Kd ..\\..\\secret\\wall.png\n");
-  EXPECT_EQ(outcome(obj("textures/t.mtl")),
-            refused("textures/t.mtl: line 3", "../../secret/wall.png"));
+  EXPECT_EQ(
+      only_warning(obj("textures/t.mtl")),
+      path("meshes/textures/t.mtl") +
+          ": line 3: 'map_Kd ..\\..\\secret\\wall.png': '..\\..\\secret\\wall.png' is outside of "
+          "the folder of the mesh file: the material's colour replaces the texture");
   EXPECT_EQ(outcome(obj("textures/t.mtl"), {.allow_outside = true}), "0");
 }
 
-TEST_F(NamedFilesTest, PlyTexturesOutsideOfTheFolderAreErrors) {
+TEST_F(NamedFilesTest, NamesOfOtherSystemsStandForFilesOfTheFolder) {
+  write("meshes/textures/Wood.PNG", "");
+  write("meshes/my wood.png", "");
+  const fs::path in_textures = directory_.path() / "meshes/textures/Wood.PNG",
+                 beside = directory_.path() / "meshes/my wood.png";
+  // The name, the file, and whether the name has another folder.
+  const std::vector<std::tuple<std::string, fs::path, bool>> names = {
+      {"textures\\wood.png", in_textures, false},
+      {"TEXTURES/wood.png", in_textures, false},
+      {"\"my wood.png\"", beside, false},
+      {"My Wood.png", beside, false},
+      {"/home/someone/my wood.png", beside, true},
+      {"C:\\Users\\someone\\MY WOOD.png", beside, true},
+      {"../other/my wood.png", beside, true},
+      {"file:///C:/x/my wood.png", beside, true}};
+  for (const auto& [name, file, is_elsewhere] : names) {
+    write("meshes/m.mtl", "newmtl m\nmap_Kd " + name + "\n");
+    std::string uri = name;
+    for (std::size_t at = 0; (at = uri.find('\\', at)) != uri.npos; at += 2)
+      uri.insert(at, 1, '\\');
+    for (std::size_t at = 0; (at = uri.find('"', at)) != uri.npos; at += 2) uri.insert(at, 1, '\\');
+    for (const fs::path& mesh :
+         {obj("m.mtl"), gltf("b.bin", R"(,"images":[{"uri":")" + uri + "\"}]")}) {
+      const auto result = read_mesh_with_appearance(mesh);
+      ASSERT_EQ(result.appearance.images.size(), 1u) << name;
+      EXPECT_EQ(result.appearance.images[0].path, file) << name;
+      EXPECT_EQ(result.warnings.size(), is_elsewhere ? 1u : 0u) << name;
+    }
+  }
+  EXPECT_EQ(outcome(obj("D:\\my models\\M.mtl")), "1");
+  EXPECT_EQ(outcome(obj("/home/someone/m.mtl")), "1");
+}
+
+TEST_F(NamedFilesTest, PlyTexturesOutsideOfTheFolderAreWarnings) {
   const fs::path file = write(
       "meshes/a.ply",
       "ply\nformat ascii 1.0\ncomment TextureFile ../secret/a.png\nelement vertex 3\n"
       "property float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\n"
       "element face 1\nproperty list uchar int vertex_index\nend_header\n"
       "0 0 0 0 0\n1 0 0 0 0\n0 1 0 0 0\n3 0 1 2\n");
-  EXPECT_EQ(outcome(file), refused("a.ply: comment TextureFile", "../secret/a.png"));
+  EXPECT_EQ(only_warning(file),
+            refused("a.ply: comment TextureFile", "../secret/a.png") + ": the texture is ignored");
   EXPECT_EQ(outcome(file, {.allow_outside = true}), "0");
+  write("meshes/A.png", "");
+  EXPECT_EQ(outcome(file), "1");
+  EXPECT_EQ(read_mesh_with_appearance(file).appearance.images[0].path,
+            directory_.path() / "meshes/A.png");
 }
 
 TEST_F(NamedFilesTest, TheCallerLearnsOfEveryNamedFile) {

@@ -144,9 +144,34 @@ TEST(SurfaceShading, CoverageIsThePartThatPassesTheAlphaTest) {
   EXPECT_TRUE(shading.is_uniform(0, left, 0.01f, 0.01f, shading.mean(0, left)));
   EXPECT_FALSE(shading.is_alpha_masked(0, left));
   EXPECT_EQ(shading.mean(0, right).coverage, 0);
+  expect_near(shading.mean(0, right).color, {1, 0, 0}, 1e-3f);  // the nearest visible colour
   EXPECT_TRUE(shading.is_alpha_masked(0, right));
   EXPECT_TRUE(shading.is_uniform(0, right, 0.01f, 0.01f, shading.mean(0, right)));
   EXPECT_FALSE(shading.is_uniform(0, kWhole, 1, 1, lower));
+}
+
+TEST(SurfaceShading, AnOpaqueAlphaChannelIsNone) {
+  Square square;
+  square.material().base_color = {1, 0, 0};
+  square.material().alpha_map = square.texture("a.png", 1, 1, 4, {0, 0, 0, 255});
+  square.material().alpha_mode = AlphaMode::kMask;
+  EXPECT_EQ(SurfaceShading(square.mesh, square.appearance).mean(0, kWhole).coverage, 0);
+}
+
+TEST(SurfaceShading, EmissionIsAdded) {
+  Square square;
+  square.material().base_color = {0.25f, 0.5f, 0};
+  square.material().emission = {0.5f, 1, 0.5f};
+  expect_near(SurfaceShading(square.mesh, square.appearance).mean(0, kWhole).color,
+              {0.75f, 1, 0.5f}, 1e-3f);
+  square.material().emission_map = square.texture("a.png", 1, 1, 3, {255, 0, 255});
+  const SurfaceShading shading(square.mesh, square.appearance);
+  const SurfaceSample sample = shading.mean(0, kWhole);
+  expect_near(sample.color, {0.75f, 0.5f, 0.5f}, 1e-3f);
+  EXPECT_TRUE(shading.is_uniform(0, kWhole, 0.01f, 0.01f, sample));
+  square.appearance.images[0].path = "missing.png";
+  expect_near(SurfaceShading(square.mesh, square.appearance).mean(0, kWhole).color,
+              {0.25f, 0.5f, 0}, 1e-3f);
 }
 
 TEST(SurfaceShading, MaterialsAndCornersMayBeWhollyTransparent) {

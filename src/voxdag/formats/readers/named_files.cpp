@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "voxdag/core/printable.hpp"
+#include "voxdag/formats/readers/text_scan.hpp"
 
 namespace voxdag {
 namespace {
@@ -22,23 +23,116 @@ bool is_inside(const fs::path& path, const fs::path& root) {
   return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
 
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored) && !fs::is_directory(path, ignored);
+}
+
+/// Returns a name without quotes around it, with '/' between folders.
+std::string cleaned(std::string_view name) {
+  name = trim(name);
+  for (const char quote : {'"', '\''})
+    if (name.size() > 1 && name.front() == quote && name.back() == quote)
+      name = name.substr(1, name.size() - 2);
+  std::string clean(name);
+  std::replace(clean.begin(), clean.end(), '\\', '/');
+  return clean;
+}
+
+/// Returns whether a cleaned name is absolute on any system.
+bool is_absolute(std::string_view name) {
+  return name.starts_with('/') || (name.size() > 2 && name[1] == ':' && name[2] == '/') ||
+         name.find("://") != name.npos;
+}
+
+bool differ_in_case_only(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+/// Returns the file `folder` / `name` in any letter case; the first by name if there are several,
+/// and an empty path if there is none.
+fs::path in_any_case(const fs::path& folder, const fs::path& name) {
+  fs::path found = folder;
+  for (const fs::path& part : name) {
+    std::error_code failed;
+    if (fs::exists(found / part, failed)) {
+      found /= part;
+      continue;
+    }
+    std::string best;
+    for (fs::directory_iterator at(found.empty() ? "." : found, failed), end; !failed && at != end;
+         at.increment(failed)) {
+      const std::string each = at->path().filename().string();
+      if (differ_in_case_only(each, part.native()) && (best.empty() || each < best)) best = each;
+    }
+    if (best.empty()) return {};
+    found /= best;
+  }
+  return is_file(found) ? found : fs::path();
+}
+
 }  // namespace
 
 NamedFiles::NamedFiles(const MeshSource& source)
-    : options_(source.options), root_(resolved(source.folder.empty() ? "." : source.folder)) {}
+    : options_(source.options),
+      folder_(source.folder),
+      root_(resolved(source.folder.empty() ? "." : source.folder)) {}
 
-fs::path NamedFiles::find(const fs::path& folder, std::string_view name,
-                          const NamePlace& place) const {
-  fs::path path = folder / name;
-  if (!options_.allow_outside && !is_inside(resolved(path), root_))
-    throw Error(place.file, place.place,
-                name_in_quotes(name) + " is outside of the folder of the mesh file");
-  report(path);
-  return path;
+bool NamedFiles::is_allowed(const fs::path& path) const {
+  return options_.allow_outside || is_inside(resolved(path), root_);
+}
+
+/// Returns the file with the base name of `name` in `folder` or in the mesh file's folder.
+std::optional<fs::path> NamedFiles::with_base_name(const fs::path& folder,
+                                                   std::string_view name) const {
+  const std::string clean = cleaned(name), base = clean.substr(clean.rfind('/') + 1);
+  if (base.empty()) return std::nullopt;
+  for (const fs::path& each : {folder, folder_})
+    if (fs::path path = in_any_case(each, base); !path.empty() && is_allowed(path)) return path;
+  return std::nullopt;
+}
+
+std::optional<fs::path> NamedFiles::existing(const fs::path& folder, std::string_view name,
+                                             ByBaseName by_base_name) const {
+  const std::string clean = cleaned(name);
+  for (const std::string_view each : {name, std::string_view(clean)})
+    if (fs::path path = folder / each; is_file(path) && is_allowed(path)) return path;
+  if (!is_absolute(clean))
+    if (fs::path path = in_any_case(folder, clean); !path.empty() && is_allowed(path)) return path;
+  const bool stands_for_base_name = by_base_name == ByBaseName::kAlways ||
+                                    (by_base_name == ByBaseName::kIfAbsolute && is_absolute(clean));
+  return stands_for_base_name ? with_base_name(folder, name) : std::nullopt;
+}
+
+fs::path NamedFiles::find(const fs::path& folder, std::string_view name, const NamePlace& place,
+                          ByBaseName by_base_name) const {
+  std::optional<fs::path> path = existing(folder, name, ByBaseName::kNever);
+  if (!path && (path = existing(folder, name, by_base_name)) && base_names_++ == 0)
+    first_base_name_ = name_in_quotes(name);
+  if (!path) {
+    path = folder / cleaned(name);
+    if (name.find("://") != name.npos)
+      throw Error(place.file, place.place, name_in_quotes(name) + " is not a file beside the mesh");
+    if (!is_allowed(*path))
+      throw Error(place.file, place.place,
+                  name_in_quotes(name) + " is outside of the folder of the mesh file");
+  }
+  report(*path);
+  return *path;
 }
 
 void NamedFiles::report(const fs::path& path) const {
   if (options_.named_files != nullptr) options_.named_files->push_back(path);
+}
+
+std::optional<std::string> NamedFiles::warning(const std::string& file) const {
+  if (base_names_ == 0) return std::nullopt;
+  return file + ": " + std::to_string(base_names_) +
+         " names of files stand for the files with the same base name beside the mesh: the first "
+         "is " +
+         first_base_name_;
 }
 
 std::string printable_path(const fs::path& folder, std::string_view name) {

@@ -1,6 +1,12 @@
 #pragma once
 /// Files that a mesh file names: MTL files, glTF buffers, textures.
+///
+/// Many names were written on another system: with `\`, in quotes, in other letter case, or
+/// absolute. A name that exists as it stands counts; else `\` separates folders, quotes are left
+/// out, and letter case does not matter. If that does not exist either, an absolute path stands for
+/// the file with the same base name in the folder of the file that names it, or of the mesh file.
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -19,17 +25,36 @@ class NamedFiles {
  public:
   explicit NamedFiles(const MeshSource& source);
 
-  /// Returns `folder` / `name` and adds it to ReadOptions::named_files. The file need not exist.
-  /// Throws Error if the path, with symbolic links resolved, is outside the mesh file's folder,
-  /// unless ReadOptions::allow_outside is set.
+  /// The names for which the file with the same base name may stand.
+  enum class ByBaseName { kNever, kIfAbsolute, kAlways };
+
+  /// Returns the file that `name`, relative to `folder`, stands for, if it exists. Its path, with
+  /// symbolic links resolved, is in the mesh file's folder, unless ReadOptions::allow_outside is
+  /// set.
+  std::optional<std::filesystem::path> existing(const std::filesystem::path& folder,
+                                                std::string_view name,
+                                                ByBaseName by_base_name) const;
+  /// Returns existing(), or else `folder` / `name`, and adds it to ReadOptions::named_files. Throws
+  /// Error if the latter is outside the mesh file's folder, unless ReadOptions::allow_outside is
+  /// set, or if it is no path.
   std::filesystem::path find(const std::filesystem::path& folder, std::string_view name,
-                             const NamePlace& place) const;
-  /// Adds a file that the reader does not open to ReadOptions::named_files.
+                             const NamePlace& place,
+                             ByBaseName by_base_name = ByBaseName::kAlways) const;
+  /// Adds a file to ReadOptions::named_files.
   void report(const std::filesystem::path& path) const;
+  /// Returns a warning if find() found files by their base names.
+  std::optional<std::string> warning(const std::string& file) const;
 
  private:
+  bool is_allowed(const std::filesystem::path& path) const;
+  std::optional<std::filesystem::path> with_base_name(const std::filesystem::path& folder,
+                                                      std::string_view name) const;
+
   const ReadOptions& options_;
-  std::filesystem::path root_;  ///< The mesh file's folder, resolved.
+  std::filesystem::path folder_;        ///< The mesh file's.
+  std::filesystem::path root_;          ///< `folder_`, resolved.
+  mutable std::size_t base_names_ = 0;  ///< Names that find() found by base name.
+  mutable std::string first_base_name_;
 };
 
 /// Returns `folder` / `name` for error messages: long names are cut, control characters replaced.

@@ -52,6 +52,7 @@ class Loader {
   std::vector<ResolvedMaterial> load(std::vector<std::string>& warnings, Work work) {
     for (const Material& material : appearance_.materials) {
       request(color_key(material));
+      request(emission_key(material));
       request(normal_key(material));
     }
     std::vector<std::pair<const TextureKey, LoadedTexture>*> entries;
@@ -98,6 +99,11 @@ class Loader {
         key.alpha_image = material.alpha_map.image;
     }
     return key;
+  }
+
+  static TextureKey emission_key(const Material& material) {
+    const TextureUse& use = material.emission_map;
+    return {TextureKey::kColor, use.image, -1, 0, use.wrap_u, use.wrap_v};
   }
 
   static TextureKey normal_key(const Material& material) {
@@ -193,7 +199,15 @@ class Loader {
       resolved.is_alpha_textured = has_masked_texels(*resolved.color_texture);
     }
     // The alphas of texels and corners are tested separately, so that texels can be tested here.
-    if (least > 0) resolved.least_corner_alpha = material.alpha > 0 ? least / material.alpha : 2;
+    // Without colours, all corners have alpha 1.
+    if (least > 0 && (least > material.alpha || !appearance_.colors.empty()))
+      resolved.least_corner_alpha = material.alpha > 0 ? least / material.alpha : 2;
+    if (const auto found = textures_.find(emission_key(material)); found != textures_.end()) {
+      resolved.emission_texture = found->second.texture;
+      resolved.emission_uv = material.emission_map.uv;
+    }
+    if (resolved.emission_texture || !material.emission_map.exists())
+      resolved.emission = material.emission;
     if (const auto found = textures_.find(normal_key(material)); found != textures_.end()) {
       resolved.normal_texture = found->second.texture;
       resolved.normal_uv = material.normal_map.uv;

@@ -15,6 +15,9 @@ struct ResolvedMaterial {
   Vec3f color{1, 1, 1};  ///< Linear light; multiplies the texture if there is one.
   std::shared_ptr<const Texture> color_texture;
   UvTransform color_uv;
+  Vec3f emission{};  ///< Linear light, added to the colour; multiplies the texture if there is one.
+  std::shared_ptr<const Texture> emission_texture;
+  UvTransform emission_uv;
   std::shared_ptr<const Texture> normal_texture;
   UvTransform normal_uv;
   /// The alpha test of corners: the surface is masked out where the corners' alpha is less, so

@@ -23,6 +23,15 @@ bool is_near(const ColorBounds& bounds, Vec3f mean, float error) {
   return true;
 }
 
+/// Returns the nearest visible colour, premultiplied, and its alpha: the value at a point of the
+/// finest level in which it is not 0.
+Texture::Value nearest_visible(const Texture& texture, Vec2f uv) {
+  Texture::Value value = texture.sample(0, uv);
+  for (int level = 1; !(value[3] > 0) && level < texture.level_count(); ++level)
+    value = texture.sample(level, uv);
+  return value;
+}
+
 }  // namespace
 
 SurfaceShading::SurfaceShading(const Mesh& mesh, const Appearance& appearance,
@@ -57,27 +66,38 @@ SurfaceSample SurfaceShading::mean(std::uint32_t t, std::span<const Vec2f> polyg
   const ResolvedMaterial& material = tables.material(t);
   const bool has_normal_texture = with_normal && material.normal_texture;
   const bool is_plain = has_one_color(t) && !has_normal_texture;
-  if (is_plain && !with_normal) return {material.color, 1, {}};
+  const Vec3f plain = min(material.color + material.emission, Vec3f{1, 1, 1});
+  if (is_plain && !with_normal) return {plain, 1, {}};
   if (is_plain && has_one_normal(t)) {
     const Vec3f* const n = tables.normals(t);
-    return {material.color, 1, n == nullptr ? face_normal(tables.mesh, t) : n[0]};
+    return {plain, 1, n == nullptr ? face_normal(tables.mesh, t) : n[0]};
   }
   const PolygonMoments moments = polygon_moments(polygon);
-  SurfaceSample sample{material.color, 1,
-                       with_normal ? tables.mean_normal(t, polygon, moments) : Vec3f{}};
+  SurfaceSample sample{plain, 1, with_normal ? tables.mean_normal(t, polygon, moments) : Vec3f{}};
   if (is_plain) return sample;
+  sample.color = material.color;
   if (!tables.appearance.colors.empty())
     sample.color = sample.color * tables.corner_colors(t)(moments.center);
   if (material.color_texture) {
-    const Texture::Value value =
-        material.color_texture->mean(region_of(moments, tables.uv(t), material.color_uv));
+    const UvRegion region = region_of(moments, tables.uv(t), material.color_uv);
+    Texture::Value value = material.color_texture->mean(region);
     float scale = kTexelScale;
     if (material.is_alpha_textured) {
       // Makes coverages of 0 and 1 exact, despite the rounding of the filter.
       sample.coverage = value[3] > 65534.5f ? 1 : value[3] < 0.5f ? 0 : value[3] * kTexelScale;
-      scale = sample.coverage > 0 ? 1 / value[3] : 0;
+      if (!(sample.coverage > 0)) value = nearest_visible(*material.color_texture, region.center);
+      scale = value[3] > 0 ? 1 / value[3] : 0;
     }
     sample.color = sample.color * Vec3f{value[0] * scale, value[1] * scale, value[2] * scale};
+  }
+  if (material.emission != Vec3f{}) {
+    Vec3f emission = material.emission;
+    if (material.emission_texture) {
+      const Texture::Value value =
+          material.emission_texture->mean(region_of(moments, tables.uv(t), material.emission_uv));
+      emission = emission * (Vec3f{value[0], value[1], value[2]} * kTexelScale);
+    }
+    sample.color = min(sample.color + emission, Vec3f{1, 1, 1});
   }
   if (!tables.is_visible(t, material, moments.center)) sample.coverage = 0;
   if (has_normal_texture) {
@@ -100,8 +120,8 @@ bool SurfaceShading::has_normal_map(std::uint32_t t) const {
 
 bool SurfaceShading::has_one_color(std::uint32_t t) const {
   const ResolvedMaterial& material = tables_->material(t);
-  return !material.color_texture && tables_->appearance.colors.empty() &&
-         material.least_corner_alpha <= 0;
+  return !material.color_texture && !material.emission_texture &&
+         tables_->appearance.colors.empty() && material.least_corner_alpha <= 0;
 }
 
 bool SurfaceShading::has_one_normal(std::uint32_t t) const {
@@ -128,7 +148,7 @@ bool SurfaceShading::may_be_uniform(std::uint32_t t, std::span<const Vec2f> poly
                                     float color_error, float normal_error) const {
   const SurfaceTables& tables = *tables_;
   const ResolvedMaterial& material = tables.material(t);
-  if (material.color_texture || !tables.appearance.colors.empty()) {
+  if (material.color_texture || material.emission_texture || !tables.appearance.colors.empty()) {
     const ColorBounds bounds = tables.color_bounds(t, material, polygon);
     for (int c = 0; c < 3; ++c)
       if (linear_to_srgb_fast(bounds.hi[c]) - linear_to_srgb_fast(bounds.lo[c]) > 2 * color_error)
@@ -167,6 +187,7 @@ std::uint64_t SurfaceShading::bytes() const {
   std::vector<const Texture*> textures;
   for (const ResolvedMaterial& material : tables_->materials) {
     textures.push_back(material.color_texture.get());
+    textures.push_back(material.emission_texture.get());
     textures.push_back(material.normal_texture.get());
   }
   std::sort(textures.begin(), textures.end());

@@ -17,7 +17,8 @@ namespace voxdag {
 struct SurfaceTables;
 
 struct SurfaceSample {
-  Vec3f color;         ///< Mean colour of the visible part, linear light.
+  Vec3f
+      color;  ///< Mean colour of the visible part, linear light; without one, the nearest visible.
   float coverage = 1;  ///< Visible part of the area, 0 to 1.
   Vec3f normal;  ///< Mean of the unit normals: shorter where they disagree. Zero for a triangle
                  ///< without area or normals.

@@ -49,7 +49,18 @@ ColorBounds SurfaceTables::color_bounds(std::uint32_t t, const ResolvedMaterial&
       bounds.hi[c] *= static_cast<float>(texels.hi[c]) * kTexelScale;
     }
   }
-  return bounds;
+  if (material.emission == Vec3f{}) return bounds;
+  ColorBounds emission{material.emission, material.emission};
+  if (material.emission_texture) {
+    const Texture::Bounds texels =
+        bounds_of(*material.emission_texture, polygon, uv(t), material.emission_uv);
+    for (int c = 0; c < 3; ++c) {
+      emission.lo[c] *= static_cast<float>(texels.lo[c]) * kTexelScale;
+      emission.hi[c] *= static_cast<float>(texels.hi[c]) * kTexelScale;
+    }
+  }
+  const Vec3f white{1, 1, 1};
+  return {min(bounds.lo + emission.lo, white), min(bounds.hi + emission.hi, white)};
 }
 
 bool SurfaceTables::is_direction_near(std::uint32_t t, const ResolvedMaterial& material,

@@ -96,12 +96,10 @@ class AllowedFiles : public Assimp::DefaultIOSystem {
  private:
   bool is_allowed(const char* file) const {
     if (file == source_.name) return true;
-    try {
-      named_.find({}, file, {source_.name, ""});
-      return true;
-    } catch (const Error&) {
-      return false;
-    }
+    const auto path = named_.existing({}, file, NamedFiles::ByBaseName::kNever);
+    if (!path || *path != file) return false;
+    named_.report(*path);
+    return true;
   }
 
   const MeshSource& source_;

@@ -31,7 +31,9 @@ int component_count(const GltfValue& accessor) {
   if (type == "SCALAR") return 1;
   if (type == "VEC2") return 2;
   if (type == "VEC3") return 3;
-  return type == "VEC4" ? 4 : 0;
+  if (type == "VEC4") return 4;
+  // Columns of smaller components would be padded.
+  return type == "MAT4" && accessor["componentType"].whole() == kFloat ? 16 : 0;
 }
 
 template <class T>
@@ -62,7 +64,8 @@ Elements find_elements(const GltfFile& file, const GltfValue& user, std::size_t 
                        std::size_t element_bytes, bool may_have_stride) {
   std::optional<GltfValue> view;
   const std::string_view bytes = file.view_bytes(user, view);
-  const std::uint64_t stride = (*view)["byteStride"].whole(element_bytes);
+  std::uint64_t stride = (*view)["byteStride"].whole(element_bytes);
+  if (stride == 0) stride = element_bytes;  // Some programs write 0 for "without gaps".
   if (stride < element_bytes || stride > 1024 || (!may_have_stride && stride != element_bytes))
     throw view->error("byte stride " + std::to_string(stride) + " does not fit elements of " +
                       std::to_string(element_bytes) + " bytes");
@@ -84,13 +87,32 @@ std::uint32_t gltf_count(const GltfValue& accessor) {
   return static_cast<std::uint32_t>(count);
 }
 
-GltfAccessor::GltfAccessor(const GltfFile& file, const GltfValue& value)
-    : components_(component_count(value)), changes_(file.source().work().memory) {
+void GltfAccessor::read_type(const GltfValue& value) {
   type_ = value["componentType"].whole();
   component_bytes_ = voxdag::component_bytes(type_, value);
-  if (components_ == 0) throw value.error("the elements must be scalars or vectors");
+  if (components_ == 0)
+    throw value.error("the elements must be scalars, vectors or MAT4 of floats");
   is_normalized_ = value["normalized"].boolean(false);
   count_ = gltf_count(value);
+}
+
+GltfAccessor::GltfAccessor(const GltfFile& file, const GltfValue& value, CountedVector<char> bytes)
+    : components_(component_count(value)),
+      changes_(file.source().work().memory),
+      bytes_(std::move(bytes)) {
+  read_type(value);
+  dense_ = bytes_.data();
+  stride_ = static_cast<std::size_t>(components_) * component_bytes_;
+  if (bytes_.size() != count_ * stride_)
+    throw value.error(std::to_string(bytes_.size()) + " bytes are decoded for " +
+                      std::to_string(count_) + " elements");
+}
+
+GltfAccessor::GltfAccessor(const GltfFile& file, const GltfValue& value)
+    : components_(component_count(value)),
+      changes_(file.source().work().memory),
+      bytes_(file.source().work().memory) {
+  read_type(value);
   const bool has_view = value["bufferView"].exists();
   if (!has_view && !value["sparse"].exists())
     throw value.error("the accessor has neither a buffer view nor sparse values");
@@ -210,7 +232,7 @@ const GltfAccessor& GltfAccessors::attributes(std::uint64_t index, const GltfVal
   const GltfAccessor& accessor = find(index, user);
   if (accessor.components() == components || accessor.components() == or_components)
     return accessor;
-  const auto type = [](int n) { return "VEC" + std::to_string(n); };
+  const auto type = [](int n) { return n == 16 ? "MAT4" : "VEC" + std::to_string(n); };
   throw file_.item(GltfArray::kAccessors, index, user)
       .error(std::string(what) + " must be " + type(components) +
              (components == or_components ? "" : " or " + type(or_components)));

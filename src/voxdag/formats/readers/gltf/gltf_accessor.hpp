@@ -16,9 +16,12 @@ class GltfAccessor {
  public:
   /// Checks that every element is inside its buffer. Throws Error, OverMemory.
   GltfAccessor(const GltfFile& file, const GltfValue& value);
+  /// Takes the bytes of all elements, which have no gaps between them.
+  GltfAccessor(const GltfFile& file, const GltfValue& value, CountedVector<char> bytes);
 
   std::size_t size() const { return count_; }
-  int components() const { return components_; }  ///< 1 for SCALAR, 2 to 4 for VEC2 to VEC4.
+  /// Returns 1 for SCALAR, 2 to 4 for VEC2 to VEC4, 16 for MAT4.
+  int components() const { return components_; }
   std::uint64_t component_type() const { return type_; }
 
   /// Returns `n` components of element `i` as floats; n <= components().
@@ -36,6 +39,7 @@ class GltfAccessor {
   /// A sparse value and the element that it replaces.
   using Change = std::pair<std::uint32_t, const char*>;
 
+  void read_type(const GltfValue& value);
   void read_sparse(const GltfFile& file, const GltfValue& sparse);
   /// Returns the bytes of an element, or null if the element is zero.
   const char* find(std::size_t i) const;
@@ -49,6 +53,7 @@ class GltfAccessor {
   const char* dense_ = nullptr;  ///< The first dense element, if there are any.
   std::size_t stride_ = 0;
   CountedVector<Change> changes_;  ///< Sorted by element.
+  CountedVector<char> bytes_;      ///< The dense elements, if they are not in a buffer.
 };
 
 /// The accessors of a file, each checked once.
@@ -56,6 +61,10 @@ class GltfAccessors {
  public:
   explicit GltfAccessors(const GltfFile& file)
       : file_(file), accessors_(file.source().work().memory) {}
+
+  /// Decodes the accessors of a primitive of KHR_draco_mesh_compression that have no bytes of their
+  /// own. Throws Error, OverMemory.
+  void decode_draco(const GltfValue& primitive);
 
   /// The functions below return the accessor that `user` refers to, for one purpose. The references
   /// stay valid. They throw Error and OverMemory.
@@ -65,8 +74,8 @@ class GltfAccessors {
   const GltfAccessor& positions(std::uint64_t index, const GltfValue& user);
   /// Returns indices: SCALAR of unsigned 8, 16 or 32 bits. Does not check their values.
   const GltfAccessor& indices(std::uint64_t index, const GltfValue& user);
-  /// Returns attributes: VEC2 texture coordinates, VEC3 normals, VEC3 or VEC4 colours. `what` names
-  /// them in errors.
+  /// Returns attributes of `components` or `or_components` numbers: VEC2 texture coordinates, VEC3
+  /// normals, VEC3 or VEC4 colours, 16 for MAT4 of float. `what` names them in errors.
   const GltfAccessor& attributes(std::uint64_t index, const GltfValue& user, int components,
                                  int or_components, const char* what);
 

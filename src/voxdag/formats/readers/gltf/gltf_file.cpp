@@ -1,14 +1,65 @@
 #include "voxdag/formats/readers/gltf/gltf_file.hpp"
 
+#include <algorithm>
+
 #include "voxdag/core/printable.hpp"
+#include "voxdag/formats/readers/gltf/gltf_meshopt.hpp"
 
 namespace voxdag {
 namespace {
 
-constexpr std::array kArrayNames = {"buffers", "bufferViews", "accessors", "meshes",   "nodes",
-                                    "scenes",  "materials",   "images",    "textures", "samplers"};
+constexpr std::array kArrayNames = {"buffers",  "bufferViews", "accessors", "meshes",
+                                    "nodes",    "scenes",      "materials", "images",
+                                    "textures", "samplers",    "skins"};
 
-/// Returns whether an array does not affect geometry. A malformed one counts as empty.
+/// The extensions that are read.
+constexpr std::string_view kReadExtensions[] = {"EXT_mesh_gpu_instancing",
+                                                "EXT_meshopt_compression",
+                                                "EXT_texture_webp",
+                                                "KHR_draco_mesh_compression",
+                                                "KHR_materials_emissive_strength",
+                                                "KHR_materials_pbrSpecularGlossiness",
+                                                "KHR_mesh_quantization",
+                                                "KHR_node_visibility",
+                                                "KHR_texture_transform"};
+/// The extensions that change neither shape nor colour of the surface at rest.
+constexpr std::string_view kHarmlessExtensions[] = {"EXT_lights_ies",
+                                                    "EXT_lights_image_based",
+                                                    "EXT_mesh_features",
+                                                    "EXT_mesh_manifold",
+                                                    "EXT_structural_metadata",
+                                                    "FB_ngon_encoding",
+                                                    "KHR_animation_pointer",
+                                                    "KHR_lights_punctual",
+                                                    "KHR_materials_anisotropy",
+                                                    "KHR_materials_clearcoat",
+                                                    "KHR_materials_diffuse_transmission",
+                                                    "KHR_materials_dispersion",
+                                                    "KHR_materials_ior",
+                                                    "KHR_materials_iridescence",
+                                                    "KHR_materials_sheen",
+                                                    "KHR_materials_specular",
+                                                    "KHR_materials_transmission",
+                                                    "KHR_materials_unlit",
+                                                    "KHR_materials_variants",
+                                                    "KHR_materials_volume",
+                                                    "KHR_node_hoverability",
+                                                    "KHR_node_selectability",
+                                                    "KHR_xmp",
+                                                    "KHR_xmp_json_ld",
+                                                    "MSFT_lod",
+                                                    "MSFT_packing_normalRoughnessMetallic",
+                                                    "MSFT_packing_occlusionRoughnessMetallic"};
+/// The extensions of textures that are not read: the shape does not need them.
+constexpr std::string_view kTextureExtensions[] = {"EXT_texture_avif", "KHR_texture_basisu",
+                                                   "KHR_texture_procedurals", "MSFT_texture_dds"};
+
+template <std::size_t n>
+bool is_among(const std::string_view (&names)[n], std::string_view name) {
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+
+/// Returns whether the array may be malformed, which counts as empty.
 bool is_optional(GltfArray array) { return array >= GltfArray::kImages; }
 
 std::uint32_t load_u32(std::string_view bytes, std::size_t offset) {
@@ -18,22 +69,14 @@ std::uint32_t load_u32(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
-/// Returns whether an extension leaves the geometry unchanged.
-bool is_harmless_extension(std::string_view name) {
-  for (const std::string_view prefix :
-       {"KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "KHR_lights_",
-        "EXT_lights_", "KHR_xmp", "KHR_animation_pointer", "KHR_mesh_quantization"})
-    if (name.starts_with(prefix)) return true;
-  return false;
-}
-
 }  // namespace
 
-GltfFile::GltfFile(const MeshSource& source)
+GltfFile::GltfFile(const MeshSource& source, Warnings& warnings, bool with_appearance)
     : source_(source), named_files_(source), buffers_(source.work().memory) {
   const std::string_view bytes = source.bytes;
   if (!bytes.starts_with("glTF")) {
     parse(bytes);
+    check_extensions(warnings, with_appearance);
     open_buffers(std::nullopt);
     return;
   }
@@ -50,7 +93,10 @@ GltfFile::GltfFile(const MeshSource& source)
   const std::size_t json_bytes = load_u32(bytes, 12);
   if (chunks.size() < 20 || json_bytes > chunks.size() - 20 || chunks.substr(16, 4) != "JSON")
     throw source.error_at_byte(12, "the first chunk must be JSON and end inside the file");
-  parse(chunks.substr(20, json_bytes));
+  std::string_view json = chunks.substr(20, json_bytes);
+  while (json.ends_with('\0')) json.remove_suffix(1);  // Some programs do not pad with blanks.
+  parse(json);
+  check_extensions(warnings, with_appearance);
   const std::size_t second = 20 + json_bytes;
   if (chunks.size() - second < 8) {
     open_buffers(std::nullopt);
@@ -81,9 +127,24 @@ void GltfFile::check_version() const {
   if (version.empty()) throw source_.error("not glTF: 'asset.version' is missing");
   if (!version.starts_with("2."))
     throw source_.error("glTF version " + name_in_quotes(version) + ": only version 2 is read");
-  for (const GltfValue extension : root()["extensionsRequired"].items())
-    if (!is_harmless_extension(extension.text()))
-      throw extension.error("extension " + name_in_quotes(extension.text()) + " is not supported");
+}
+
+void GltfFile::check_extensions(Warnings& warnings, bool with_appearance) const {
+  const auto is_known = [](std::string_view name) {
+    return is_among(kReadExtensions, name) || is_among(kHarmlessExtensions, name);
+  };
+  for (const GltfValue extension : root()["extensionsRequired"].items()) {
+    const std::string name = extension.text();
+    if (!is_known(name) && (with_appearance || !is_among(kTextureExtensions, name)))
+      throw extension.error("extension " + name_in_quotes(name) + " is not supported");
+  }
+  CancelPoll poll(source_.work());
+  for (const GltfValue extension : root()["extensionsUsed"].items()) {
+    poll.step();
+    const std::string name = extension.text();
+    if (!is_known(name) && (with_appearance || !is_among(kTextureExtensions, name)))
+      warnings.add(extension.error("extension " + name_in_quotes(name) + " is not read").what());
+  }
 }
 
 void GltfFile::open_buffers(std::optional<std::string_view> binary_chunk) {
@@ -95,6 +156,8 @@ void GltfFile::open_buffers(std::optional<std::string_view> binary_chunk) {
     const std::string_view uri = value["uri"].text_view(unescaped);
     if (!uri.empty()) {
       open_uri(value, uri, buffer);
+    } else if (value["extensions"]["EXT_meshopt_compression"]["fallback"].boolean(false)) {
+      continue;  // The bytes are only in compressed views.
     } else {
       if (!binary_chunk || buffers_.size() > 1) throw value.error("the buffer has no URI");
       buffer.bytes = *binary_chunk;
@@ -121,12 +184,12 @@ void GltfFile::open_uri(const GltfValue& value, std::string_view uri, Buffer& bu
     buffer.bytes = buffer.decoded->bytes;
     return;
   }
-  if (uri.find("://") != uri.npos || source_.file == nullptr)
+  if (source_.file == nullptr)
     throw value.error("a buffer must be in the glTF file, in a data URI or in a file beside it");
   const std::string name = decode_percent(uri);
   if (name.find('\0') != name.npos) throw value.error("malformed URI");
-  const std::filesystem::path path =
-      named_files_.find(source_.folder, name, {source_.name, value.path()});
+  const std::filesystem::path path = named_files_.find(
+      source_.folder, name, {source_.name, value.path()}, NamedFiles::ByBaseName::kIfAbsolute);
   try {
     buffer.file.emplace(path, MappedFile::Access::kSequential);
   } catch (const Error& fault) {
@@ -144,14 +207,28 @@ GltfValue GltfFile::item(GltfArray array, std::uint64_t index, const GltfValue& 
 }
 
 std::string_view GltfFile::view_bytes(const GltfValue& user, std::optional<GltfValue>& view) const {
-  view = item(GltfArray::kBufferViews, user["bufferView"].whole(), user);
-  const std::uint64_t index = (*view)["buffer"].whole();
-  item(GltfArray::kBuffers, index, *view);
+  const std::uint64_t index = user["bufferView"].whole();
+  view = item(GltfArray::kBufferViews, index, user);
+  const GltfValue packed = (*view)["extensions"]["EXT_meshopt_compression"];
+  if (!packed.exists()) return buffer_part(*view);
+  auto decoded = decoded_views_.find(index);
+  if (decoded == decoded_views_.end())
+    decoded =
+        decoded_views_
+            .emplace(index, decode_meshopt(packed, buffer_part(packed), source_.work().memory))
+            .first;
+  return {decoded->second.data(), decoded->second.size()};
+}
+
+/// Returns the bytes between `byteOffset` and `byteLength` of a buffer.
+std::string_view GltfFile::buffer_part(const GltfValue& part) const {
+  const std::uint64_t index = part["buffer"].whole();
+  item(GltfArray::kBuffers, index, part);
   const std::string_view buffer = buffers_[index].bytes;
-  const std::uint64_t offset = (*view)["byteOffset"].whole(0);
-  const std::uint64_t length = (*view)["byteLength"].whole();
+  const std::uint64_t offset = part["byteOffset"].whole(0);
+  const std::uint64_t length = part["byteLength"].whole();
   if (offset > buffer.size() || length > buffer.size() - offset)
-    throw view->error("buffer view goes beyond its buffer");
+    throw part.error("buffer view goes beyond its buffer");
   return buffer.substr(offset, length);
 }
 

@@ -4,8 +4,9 @@
 #include <cstdint>
 
 #include "voxdag/core/vec.hpp"
+#include "voxdag/formats/readers/gltf/gltf_accessor.hpp"
 #include "voxdag/formats/readers/gltf/gltf_file.hpp"
-#include "voxdag/formats/readers/gltf/gltf_value.hpp"
+#include "voxdag/formats/readers/warnings.hpp"
 
 namespace voxdag {
 
@@ -15,6 +16,8 @@ struct GltfTransform {
 
   Vec3d direction(Vec3d v) const { return columns[0] * v.x + columns[1] * v.y + columns[2] * v.z; }
   Vec3d point(Vec3d p) const { return direction(p) + columns[3]; }
+  /// Returns whether the map turns left into right, so that it turns triangles over.
+  bool is_mirroring() const { return dot(columns[0], cross(columns[1], columns[2])) < 0; }
   /// Maps a normal with the inverse transpose, up to a positive factor. Returns zero if the map
   /// flattens space to less than a plane.
   Vec3d normal(Vec3d n) const {
@@ -29,18 +32,26 @@ struct GltfTransform {
   }
 };
 
-/// Returns the transform of a node from its matrix or its translation, rotation and scale. Throws
-/// Error.
-GltfTransform gltf_node_transform(const GltfValue& node);
-
 struct GltfInstance {
   std::uint32_t mesh;  ///< Index into the array `meshes`.
+  std::uint32_t node;  ///< Index into the array `nodes`; kGltfNoNode: the asset has none.
   GltfTransform transform;
 };
+inline constexpr std::uint32_t kGltfNoNode = ~std::uint32_t{0};
 
-/// Returns the instances of the default scene. Without a default scene, returns those of the first
-/// scene; without scenes, those of all root nodes; without nodes, every mesh once. Throws Error if
-/// nodes do not form trees, OverMemory, Cancelled.
-CountedVector<GltfInstance> find_gltf_instances(const GltfFile& file);
+struct GltfScene {
+  explicit GltfScene(MemoryBudget* memory) : instances(memory), nodes(memory), is_shown(memory) {}
+
+  CountedVector<GltfInstance> instances;
+  CountedVector<GltfTransform> nodes;  ///< World transforms, if the asset has skins.
+  CountedVector<char> is_shown;        ///< Whether a node is in the scene.
+};
+
+/// Returns the instances of the default scene: the nodes' meshes, once per instance of
+/// EXT_mesh_gpu_instancing. Without a default scene, returns those of the first scene; without
+/// scenes, those of all root nodes; without nodes, every mesh once. Leaves out what
+/// KHR_node_visibility hides. Warns of matrices whose last row is not exactly 0 0 0 1. Throws Error
+/// if nodes do not form trees, OverMemory, Cancelled.
+GltfScene find_gltf_scene(const GltfFile& file, GltfAccessors& accessors, Warnings& warnings);
 
 }  // namespace voxdag

@@ -14,13 +14,23 @@ std::uint64_t uv_set_of(const GltfValue& texture_info) {
   return transform_of(texture_info)["texCoord"].whole(texture_info["texCoord"].whole(0));
 }
 
-GltfValue color_texture(const GltfValue& material) {
-  return material["pbrMetallicRoughness"]["baseColorTexture"];
+/// The colour of a material: of its metallic-roughness model, else of its specular-glossiness one.
+struct ColorValues {
+  GltfValue factor, texture;
+};
+
+ColorValues color_of(const GltfValue& material) {
+  const GltfValue pbr = material["pbrMetallicRoughness"];
+  const ColorValues color{pbr["baseColorFactor"], pbr["baseColorTexture"]};
+  const GltfValue diffuse = material["extensions"]["KHR_materials_pbrSpecularGlossiness"];
+  if (color.factor.exists() || color.texture.exists() || !diffuse.exists()) return color;
+  return {diffuse["diffuseFactor"], diffuse["diffuseTexture"]};
 }
 
 std::uint64_t uv_set_of_material(const GltfValue& material) {
-  const GltfValue color = color_texture(material);
-  return uv_set_of(color.exists() ? color : material["normalTexture"]);
+  for (const GltfValue& texture : {color_of(material).texture, material["normalTexture"]})
+    if (texture.exists()) return uv_set_of(texture);
+  return uv_set_of(material["emissiveTexture"]);
 }
 
 /// Returns the transform T * R * S of the extension KHR_texture_transform.
@@ -53,8 +63,6 @@ std::string file_name_of(const GltfValue& image) {
   std::string unescaped;
   const std::string_view uri = image["uri"].text_view(unescaped);
   if (uri.empty() || uri.starts_with("data:")) return "";
-  if (uri.find("://") != uri.npos)
-    throw image.error("an image must be in the glTF file, in a data URI or in a file beside it");
   std::string name = decode_percent(uri);
   if (name.find('\0') != name.npos) throw image.error("malformed URI");
   return name;
@@ -108,14 +116,16 @@ class MaterialReader {
       TextureImage& out = appearance_.images.emplace_back();
       out.name = file_.source().name + ": " + image.path();
       std::string file_name;
-      attempt([&] { file_name = file_name_of(image); }, "the image is ignored");
-      if (!file_name.empty()) {
-        const std::filesystem::path& folder = file_.source().folder;
-        out.path = file_.named_files().find(folder, file_name, {file_.source().name, image.path()});
-        out.name = printable_path(folder, file_name);
-      } else {
-        attempt([&] { copy_image(image, out); }, "the image is ignored");
-      }
+      attempt(
+          [&] {
+            file_name = file_name_of(image);
+            if (file_name.empty()) return copy_image(image, out);
+            const std::filesystem::path& folder = file_.source().folder;
+            out.path =
+                file_.named_files().find(folder, file_name, {file_.source().name, image.path()});
+            out.name = printable_path(folder, file_name);
+          },
+          "the image is ignored");
       add_memory(out.name.size() + 3 * out.path.native().size());
     }
   }
@@ -149,8 +159,8 @@ class MaterialReader {
 
   void read_material(const GltfValue& value, Material& material) {
     material.name = value["name"].text();
-    const GltfValue pbr = value["pbrMetallicRoughness"];
-    const std::vector<double> factor = pbr["baseColorFactor"].numbers(4);
+    const ColorValues color = color_of(value);
+    const std::vector<double> factor = color.factor.numbers(4);
     for (int c = 0; c < 3 && !factor.empty(); ++c)
       material.base_color[c] = static_cast<float>(std::clamp(factor[c], 0.0, 1.0));
     if (!factor.empty()) material.alpha = static_cast<float>(std::clamp(factor[3], 0.0, 1.0));
@@ -160,11 +170,21 @@ class MaterialReader {
                           : mode == "BLEND" ? AlphaMode::kBlend
                                             : AlphaMode::kOpaque;
     material.alpha_cutoff = static_cast<float>(value["alphaCutoff"].number(0.5));
-    attempt([&] { material.color_map = use(color_texture(value), value); },
+    attempt([&] { material.color_map = use(color.texture, value); },
             "the material's colour replaces the texture");
     const GltfValue normal = value["normalTexture"];
     attempt([&] { material.normal_map = use(normal, value); }, "the normal texture is ignored");
     material.normal_scale = static_cast<float>(normal["scale"].number(1));
+    const std::vector<double> emissive = value["emissiveFactor"].numbers(3);
+    const double strength =
+        value["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"].number(1);
+    for (int c = 0; c < 3 && !emissive.empty(); ++c)
+      material.emission[c] = static_cast<float>(std::clamp(emissive[c] * strength, 0.0, 1e6));
+    if (material.emission != Vec3f{})
+      attempt([&] { material.emission_map = use(value["emissiveTexture"], value); },
+              "the material does not emit");
+    if (value["emissiveTexture"].exists() && !material.emission_map.exists())
+      material.emission = {};
   }
 
   TextureUse use(const GltfValue& info, const GltfValue& material) const {
@@ -173,8 +193,13 @@ class MaterialReader {
     if (uv_set_of(info) != uv_set_of_material(material))
       throw info.error("uses other texture coordinates than the colour texture");
     const GltfValue texture = file_.item(GltfArray::kTextures, info["index"].whole(), info);
-    const std::uint64_t image = texture["source"].whole();
+    const GltfValue webp = texture["extensions"]["EXT_texture_webp"]["source"];
+    const std::uint64_t image = (webp.exists() ? webp : texture["source"]).whole();
     file_.item(GltfArray::kImages, image, texture);
+    // An image that is left out had its warning.
+    if (const TextureImage& named = appearance_.images[image];
+        named.path.empty() && named.bytes.empty())
+      return use;
     use.image = static_cast<int>(image);
     use.uv = uv_transform(info);
     if (!texture["sampler"].exists()) return use;
@@ -215,7 +240,7 @@ void report_gltf_images(const GltfFile& file) {
   if (file.source().options.named_files == nullptr) return;
   for (const GltfValue image : file.array(GltfArray::kImages)) try {
       const std::string name = file_name_of(image);
-      if (!name.empty()) file.named_files().report(file.source().folder / name);
+      if (!name.empty()) file.named_files().find(file.source().folder, name, {"", ""});
     } catch (const Error&) {  // The name of the file is unknown.
     }
 }

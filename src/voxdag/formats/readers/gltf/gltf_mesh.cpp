@@ -46,6 +46,23 @@ void find_attributes(const GltfFile& file, GltfPrimitive& primitive, GltfAccesso
       find_attribute(file, primitive, "COLOR_0", accessors, 3, 4, "colours", warnings);
 }
 
+/// Returns whether an accessor has no elements, which is not allowed and means an empty primitive.
+bool is_empty(const GltfFile& file, const GltfValue& primitive, const GltfValue& index) {
+  return index.exists() &&
+         file.item(GltfArray::kAccessors, index.whole(), primitive)["count"].whole(1) == 0;
+}
+
+/// The accessors that decide the positions of a primitive's vertices. Equal ones share them.
+using VertexArrays = std::array<std::uint64_t, 3>;
+
+VertexArrays vertices_of(const GltfValue& primitive) {
+  constexpr std::uint64_t kNone = ~std::uint64_t{0};
+  const GltfItems targets = primitive["targets"].items();
+  return {primitive["attributes"]["POSITION"].whole(),
+          primitive["attributes"]["JOINTS_0"].whole(kNone),
+          targets.empty() ? kNone : targets[0]["POSITION"].whole(kNone)};
+}
+
 std::uint32_t material_of(const GltfFile& file, const GltfValue& primitive) {
   const GltfValue material = primitive["material"];
   if (!material.exists())
@@ -54,22 +71,13 @@ std::uint32_t material_of(const GltfFile& file, const GltfValue& primitive) {
   return static_cast<std::uint32_t>(material.whole());
 }
 
-const GltfAccessor& find_positions(const GltfFile& file, const GltfValue& primitive,
-                                   std::uint64_t index, GltfAccessors& accessors) {
-  const GltfValue accessor = file.item(GltfArray::kAccessors, index, primitive);
-  if (!accessor["bufferView"].exists() &&
-      primitive["extensions"]["KHR_draco_mesh_compression"].exists())
-    throw primitive.error("the primitive is compressed with Draco, which is not supported");
-  return accessors.positions(index, primitive);
-}
-
 }  // namespace
 
 GltfMesh compile_gltf_mesh(const GltfFile& file, const GltfValue& mesh, GltfAccessors& accessors,
                            Warnings* warnings) {
-  using Start = std::pair<const std::uint64_t, std::uint32_t>;
+  using Start = std::pair<const VertexArrays, std::uint32_t>;
   MemoryBudget* const memory = file.source().work().memory;
-  std::map<std::uint64_t, std::uint32_t, std::less<>, CountedAllocator<Start>> starts(
+  std::map<VertexArrays, std::uint32_t, std::less<>, CountedAllocator<Start>> starts(
       (CountedAllocator<Start>(memory)));
   GltfMesh result(memory);
   CancelPoll poll(file.source().work());
@@ -82,10 +90,12 @@ GltfMesh compile_gltf_mesh(const GltfFile& file, const GltfValue& mesh, GltfAcce
                         " is unknown: the modes are 0 to 6");
     const GltfValue position = value["attributes"]["POSITION"];
     if (primitive.mode < kGltfTriangles || !position.exists()) continue;
+    if (is_empty(file, value, position) || is_empty(file, value, value["indices"])) continue;
     const std::uint64_t index = position.whole();
-    primitive.positions = &find_positions(file, value, index, accessors);
+    accessors.decode_draco(value);
+    primitive.positions = &accessors.positions(index, value);
     const auto [start, is_new] =
-        starts.try_emplace(index, static_cast<std::uint32_t>(result.vertices));
+        starts.try_emplace(vertices_of(value), static_cast<std::uint32_t>(result.vertices));
     primitive.first_vertex = start->second;
     primitive.adds_vertices = is_new;
     const GltfValue indices = value["indices"];

@@ -8,42 +8,40 @@
 #include "voxdag/formats/readers/gltf/gltf_instances.hpp"
 #include "voxdag/formats/readers/gltf/gltf_materials.hpp"
 #include "voxdag/formats/readers/gltf/gltf_mesh.hpp"
+#include "voxdag/formats/readers/gltf/gltf_pose.hpp"
 
 namespace voxdag {
 namespace {
 
 Vec3f to_vec3(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// Returns a unit normal, or zero if the normal has no direction.
-Vec3f transformed_normal(const GltfTransform& transform, Vec3f normal) {
-  return static_cast<Vec3f>(normalized_or(transform.normal(static_cast<Vec3d>(normal)), {}));
-}
-
 class GltfReader {
  public:
   GltfReader(const MeshSource& source, ReadParts parts)
       : source_(source),
         has_appearance_(parts == ReadParts::kMeshAndAppearance),
-        file_(source),
+        file_(source, warnings_, has_appearance_),
         accessors_(file_),
+        scene_(find_gltf_scene(file_, accessors_, warnings_)),
+        pose_(file_, accessors_, scene_),
         meshes_(source.work().memory),
         memory_(source.work().memory, 0),
         mesh_(empty_mesh(source.options.arrays)) {}
 
   MeshWithAppearance read() {
-    const CountedVector<GltfInstance> instances = find_gltf_instances(file_);
-    compile(instances);
-    make_room(instances);
-    for (const GltfInstance& instance : instances) add_instance(instance);
+    compile(scene_.instances);
+    make_room(scene_.instances);
+    for (const GltfInstance& instance : scene_.instances) add_instance(instance);
     file_.release_pages();
     MeshWithAppearance result;
     if (has_appearance_) {
       read_gltf_materials(file_, mesh_, appearance_, warnings_);
       result.appearance = std::move(appearance_);
-      result.warnings = warnings_.take(source_.name);
-    } else {
-      report_gltf_images(file_);
     }
+    if (auto warning = file_.named_files().warning(source_.name))
+      warnings_.add(std::move(*warning));
+    if (!has_appearance_) report_gltf_images(file_);
+    result.warnings = warnings_.take(source_.name);
     result.mesh = std::move(mesh_);
     return result;
   }
@@ -112,32 +110,35 @@ class GltfReader {
 
   void add_instance(const GltfInstance& instance) {
     const auto first_vertex = static_cast<std::uint32_t>(mesh_.vertices.size());
+    pose_.start(instance);
     for (const GltfPrimitive& primitive : meshes_[instance.mesh].primitives) {
+      pose_.start(primitive);
       if (primitive.adds_vertices)
         for (std::size_t i = 0; i < primitive.positions->size(); ++i) {
           step();
-          const Vec3d p(to_vec3(primitive.positions->floats<3>(i)));
-          mesh_.vertices.push_back(source_.vertex(instance.transform.point(p)));
+          mesh_.vertices.push_back(source_.vertex(pose_.position(i)));
         }
       for (std::size_t i = 0; i < primitive.triangles; ++i)
-        add_triangle(primitive, i, first_vertex + primitive.first_vertex, instance.transform);
+        add_triangle(primitive, i, first_vertex + primitive.first_vertex);
     }
   }
 
-  void add_triangle(const GltfPrimitive& primitive, std::size_t i, std::uint32_t first_vertex,
-                    const GltfTransform& transform) {
+  void add_triangle(const GltfPrimitive& primitive, std::size_t i, std::uint32_t first_vertex) {
     step();
     const std::size_t t = mesh_.triangles.size();
     Triangle triangle{};
-    const auto corners = gltf_triangle_corners(primitive.mode, i);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::size_t index =
-          primitive.indices != nullptr ? primitive.indices->index(corners[c]) : corners[c];
+    auto corners = gltf_triangle_corners(primitive.mode, i);
+    for (std::size_t& index : corners) {
+      if (primitive.indices != nullptr) index = primitive.indices->index(index);
       if (index >= primitive.positions->size())
         throw primitive.value.error("vertex index " + std::to_string(index) + " is out of range: " +
                                     std::to_string(primitive.positions->size()) + " vertices");
+    }
+    if (pose_.is_mirrored(corners[0])) std::swap(corners[1], corners[2]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t index = corners[c];
       triangle[c] = first_vertex + static_cast<std::uint32_t>(index);
-      if (has_appearance_) set_attributes(primitive, index, 3 * t + c, transform);
+      if (has_appearance_) set_attributes(primitive, index, 3 * t + c);
     }
     mesh_.triangles.push_back(triangle);
     if (mesh_.triangle_materials.capacity() > 0)
@@ -145,11 +146,8 @@ class GltfReader {
   }
 
   /// Sets the attributes of a corner of the mesh to those of a vertex of a primitive.
-  void set_attributes(const GltfPrimitive& primitive, std::size_t vertex, std::size_t corner,
-                      const GltfTransform& transform) {
-    if (primitive.normals != nullptr)
-      appearance_.normals[corner] =
-          transformed_normal(transform, to_vec3(primitive.normals->floats<3>(vertex)));
+  void set_attributes(const GltfPrimitive& primitive, std::size_t vertex, std::size_t corner) {
+    if (primitive.normals != nullptr) appearance_.normals[corner] = pose_.normal(vertex);
     if (primitive.uvs != nullptr) {
       const auto [u, v] = primitive.uvs->floats<2>(vertex);
       if (std::isfinite(u) && std::isfinite(v)) appearance_.uvs[corner] = {u, v};
@@ -177,14 +175,16 @@ class GltfReader {
 
   const MeshSource& source_;
   const bool has_appearance_;
+  Warnings warnings_;
   const GltfFile file_;
   GltfAccessors accessors_;
+  const GltfScene scene_;
+  GltfPose pose_;
   CountedVector<GltfMesh> meshes_;  ///< Per mesh of the file; empty unless an instance shows it.
   bool has_normals_ = false, has_uvs_ = false, has_colors_ = false;
   bool has_default_material_ = false;
   std::uint32_t steps_ = 0;
   MemoryReservation memory_;  ///< The arrays of mesh and appearance.
-  Warnings warnings_;
   Mesh mesh_;
   Appearance appearance_;
 };

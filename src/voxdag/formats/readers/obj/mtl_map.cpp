@@ -14,6 +14,36 @@ bool take_switch(std::string_view& text) {
   return value == "on";
 }
 
+/// Takes the options at the start of the text, and returns the rest.
+std::string_view take_options(std::string_view text, MtlMap& map) {
+  for (; text.starts_with('-'); text = trim(text)) {
+    std::string_view rest = text;
+    const std::string option = to_lower(next_token(rest));
+    std::array<float, 3> ignored{};
+    if (option == "-s")
+      take_numbers(rest, map.scale, 1, "-s takes one to three finite numbers");
+    else if (option == "-o")
+      take_numbers(rest, map.offset, 1, "-o takes one to three finite numbers");
+    else if (option == "-mm")
+      take_numbers(rest, map.base_gain, 2, "-mm takes two finite numbers");
+    else if (option == "-bm")
+      take_numbers(rest, std::span(&map.bump, 1), 1, "-bm takes a finite number");
+    else if (option == "-clamp")
+      map.clamp = take_switch(rest);
+    else if (option == "-t")
+      take_numbers(rest, ignored);
+    else if (option == "-boost" || option == "-texres")
+      take_numbers(rest, std::span(ignored).first(1));
+    else if (option == "-blendu" || option == "-blendv" || option == "-cc" ||
+             option == "-imfchan" || option == "-type")
+      next_token(rest);
+    else
+      break;  // Not an option: a file whose name starts with a dash.
+    text = rest;
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string to_lower(std::string_view text) {
@@ -43,31 +73,14 @@ void take_numbers(std::string_view& text, std::span<float> numbers, std::size_t 
 
 MtlMap parse_mtl_map(std::string_view text) {
   MtlMap map;
-  for (text = trim(text); text.starts_with('-'); text = trim(text)) {
-    std::string_view rest = text;
-    const std::string option = to_lower(next_token(rest));
-    std::array<float, 3> ignored{};
-    if (option == "-s")
-      take_numbers(rest, map.scale, 1, "-s takes one to three finite numbers");
-    else if (option == "-o")
-      take_numbers(rest, map.offset, 1, "-o takes one to three finite numbers");
-    else if (option == "-mm")
-      take_numbers(rest, map.base_gain, 2, "-mm takes two finite numbers");
-    else if (option == "-bm")
-      take_numbers(rest, std::span(&map.bump, 1), 1, "-bm takes a finite number");
-    else if (option == "-clamp")
-      map.clamp = take_switch(rest);
-    else if (option == "-t")
-      take_numbers(rest, ignored);
-    else if (option == "-boost" || option == "-texres")
-      take_numbers(rest, std::span(ignored).first(1));
-    else if (option == "-blendu" || option == "-blendv" || option == "-cc" ||
-             option == "-imfchan" || option == "-type")
-      next_token(rest);
-    else
-      break;  // Not an option: a file whose name starts with a dash.
-    text = rest;
-  }
+  text = take_options(trim(text), map);
+  for (std::size_t at = text.find(" -"); at != text.npos; at = text.find(" -", at + 1)) try {
+      MtlMap with_more = map;
+      if (!take_options(trim(text.substr(at)), with_more).empty()) continue;
+      map = with_more;
+      text = trim(text.substr(0, at));
+    } catch (const MalformedMtl&) {  // The dash belongs to the name.
+    }
   map.file = text;
   if (map.file.empty()) throw MalformedMtl("it names no file");
   return map;

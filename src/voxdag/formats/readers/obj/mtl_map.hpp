@@ -22,7 +22,8 @@ struct MtlMap {
   bool clamp = false;
 };
 
-/// Parses the arguments of a map statement. Throws MalformedMtl.
+/// Parses the arguments of a map statement: options, the name of a file, and options again, which
+/// some programs write after the name. Throws MalformedMtl.
 MtlMap parse_mtl_map(std::string_view text);
 
 /// Removes the numbers at the start of the text, at most `numbers.size()`, and stores them in

@@ -49,24 +49,43 @@ class MtlReader::Impl {
           else if (material_ != nullptr)
             take(keyword, trim(line));
         });
+    finish();
   }
 
   bool describes(std::size_t material) const { return is_described_[material]; }
 
  private:
   void start(std::string_view name) {
+    finish();
     const auto found = names_.find(name);
     material_ = found ? &appearance_.materials[*found] : nullptr;
     if (!found) return;
     *material_ = {};
     material_->name = name;
     is_described_[*found] = true;
+    has_dissolve_ = false;
+    hiding_.clear();
+  }
+
+  /// Ends the statements of the current material.
+  void finish() {
+    if (material_ == nullptr) return;
+    Material& material = *material_;
+    if (!has_dissolve_ && !hiding_.empty()) {
+      material.alpha = 1;
+      warnings_.add(hiding_ + ": it would hide the material: the material is opaque");
+    }
+    material.alpha_mode = material.alpha_map.exists()   ? AlphaMode::kMask
+                          : material.alpha < 1          ? AlphaMode::kBlend
+                          : material.color_map.exists() ? AlphaMode::kMask
+                                                        : AlphaMode::kOpaque;
+    material_ = nullptr;
   }
 
   /// Adds a warning about the current statement, with its fault and its replacement.
-  void warn(const std::string& what) {
-    warnings_.add(file_ + ": " + ErrorPlace::line(line_number_).text() + ": " +
-                  in_quotes(statement_) + ": " + what);
+  void warn(const std::string& what) { warnings_.add(statement_place() + ": " + what); }
+  std::string statement_place() const {
+    return file_ + ": " + ErrorPlace::line(line_number_).text() + ": " + in_quotes(statement_);
   }
 
   /// Runs body(), which parses a statement. If the statement is malformed, adds a warning that
@@ -77,6 +96,10 @@ class MtlReader::Impl {
       body();
     } catch (const MalformedMtl& fault) {
       warn(std::string(fault.what()) + ": " + replacement);
+    } catch (const OverMemory&) {
+      throw;
+    } catch (const Error& fault) {  // of a file's name
+      warn(fault.reason() + ": " + replacement);
     }
   }
 
@@ -85,21 +108,20 @@ class MtlReader::Impl {
     if (keyword == "kd") {
       material.base_color = kDefaultColor;
       attempt("the material's colour is grey", [&] { set_color(line); });
-    } else if (keyword == "d" || keyword == "tr") {
+    } else if (keyword == "d" || (keyword == "tr" && !has_dissolve_)) {
+      has_dissolve_ = keyword == "d";
       material.alpha = 1;
       attempt("the material is opaque", [&] { set_alpha(line, keyword == "tr"); });
-      if (material.alpha < 1 && material.alpha_mode == AlphaMode::kOpaque)
-        material.alpha_mode = AlphaMode::kBlend;
+      // Some programs write as Tr what is d.
+      hiding_ = material.alpha < kBlendCutoff ? statement_place() : "";
     } else if (keyword == "map_kd") {
       material.color_map = {};
       attempt("the material's colour replaces the texture",
               [&] { material.color_map = use(parse_mtl_map(line)); });
     } else if (keyword == "map_d") {
       material.alpha_map = {};
-      attempt("the material is opaque without its alpha map", [&] {
-        material.alpha_map = use(parse_mtl_map(line));
-        material.alpha_mode = AlphaMode::kMask;
-      });
+      attempt("the material is opaque without its alpha map",
+              [&] { material.alpha_map = use(parse_mtl_map(line)); });
     } else if (keyword == "norm" || keyword == "map_kn") {
       set_normal_map(line, NormalMapKind::kTangentSpace);
     } else if (keyword == "bump" || keyword == "map_bump") {
@@ -160,17 +182,16 @@ class MtlReader::Impl {
   }
 
   /// Returns the index of an image, which it adds if it is new.
-  int image(std::string name) {
-    std::replace(name.begin(), name.end(), '\\', '/');  // Files from Windows use backslashes.
+  int image(const std::string& name) {
     std::vector<TextureImage>& images = appearance_.images;
-    const std::string key = (folder_ / name).string();
-    if (const auto known = images_.find(key)) return static_cast<int>(*known);
     const std::filesystem::path path =
         files_.find(folder_, name, {file_, ErrorPlace::line(line_number_)});
+    const std::string key = path.string();
+    if (const auto known = images_.find(key)) return static_cast<int>(*known);
     if (images.size() == images.capacity())
       images.reserve(grown(images.size(), sizeof(TextureImage)));
     image_memory_.resize(image_memory_.bytes() + 3 * key.size());  // name, path and its parts
-    images.push_back({printable_path(folder_, name), path, {}});
+    images.push_back({printable_path(path.parent_path(), path.filename().string()), path, {}});
     return static_cast<int>(images_.find_or_add(key));
   }
 
@@ -198,6 +219,8 @@ class MtlReader::Impl {
   std::size_t line_number_ = 1;
   std::string_view statement_;
   Material* material_ = nullptr;
+  bool has_dissolve_ = false;  ///< The current material has a d.
+  std::string hiding_;         ///< The place of the opacity that hides it; empty: none.
 };
 
 MtlReader::MtlReader(const MeshSource& source, const NamedFiles& files, Appearance& appearance,

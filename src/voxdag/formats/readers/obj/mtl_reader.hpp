@@ -14,10 +14,12 @@ namespace voxdag {
 
 /// Fills materials from MTL files, by name, and adds the images that they use.
 ///
-/// Reads Kd (as sRGB), d and Tr, map_Kd, map_d, norm, bump (map_bump) with -bm, disp (map_disp)
-/// with -mm, and for each map -s, -o and -clamp; ignores other statements and options. If there is
-/// a map_Kd, it alone gives the colour; Kd replaces it if the image cannot be read. A map_d makes
-/// the material a mask. A malformed statement is a warning that names its line and its replacement.
+/// Reads Kd (as sRGB), d, Tr where there is no d, map_Kd, map_d, norm, bump (map_bump) with -bm,
+/// disp (map_disp) with -mm, and for each map -s, -o and -clamp; ignores other statements and
+/// options. If there is a map_Kd, it alone gives the colour; Kd replaces it if the image cannot be
+/// read. A map_d, or a map_Kd without d below 1, makes the material a mask. A Tr that alone would
+/// hide the material is taken for a fault: the material is opaque, with a warning. A malformed
+/// statement is a warning that names its line and its replacement.
 class MtlReader {
  public:
   /// `appearance` has the materials, with distinct names. The references must stay valid.
@@ -26,7 +28,7 @@ class MtlReader {
   ~MtlReader();
 
   /// Reads the text of one file. Names of images are relative to `folder`. `name` names the file in
-  /// messages. Throws Error for an image outside the mesh file's folder, OverMemory, Cancelled.
+  /// messages. Throws OverMemory and Cancelled.
   void read(std::string_view text, const std::filesystem::path& folder, const std::string& name);
 
   /// Returns whether a file that was read describes appearance.materials[material].

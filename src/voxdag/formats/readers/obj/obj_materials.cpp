@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "voxdag/formats/readers/named_files.hpp"
+#include "voxdag/formats/readers/obj/mtl_map.hpp"
 #include "voxdag/formats/readers/obj/mtl_reader.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
 #include "voxdag/formats/readers/warnings.hpp"
@@ -13,26 +14,36 @@ namespace {
 
 constexpr std::size_t kLargestMtlBytes = std::size_t{64} << 20;
 
-/// Replaces the separators of Windows in a name.
-std::string with_slashes(std::string_view name) {
-  std::string out(name);
-  std::replace(out.begin(), out.end(), '\\', '/');
-  return out;
-}
-
-/// Calls body(name) for each file that the argument of `mtllib` names: one file with blanks in its
-/// name, or several files.
+/// Calls body(name, path) for each file that the argument of `mtllib` names: one file with blanks
+/// in its name, or several files; a blank in a folder's name ends nothing. Adds a warning for each
+/// name outside the OBJ file's folder.
 template <class Body>
-void for_each_library(const MeshSource& source, const NameTable& libraries, const Body& body) {
-  for (std::size_t i = 0; i < libraries.size(); ++i) {
-    const std::string whole = with_slashes(libraries[i]);
-    std::error_code ignored;
-    if (std::filesystem::exists(source.folder / whole, ignored)) {
-      body(whole);
-      continue;
+void for_each_library(const MeshSource& source, const NamedFiles& files, const NameTable& libraries,
+                      Warnings& warnings, const Body& body) {
+  const auto find = [&](std::string_view name) {
+    try {
+      body(name, files.find(source.folder, name, {source.name, "mtllib"}));
+    } catch (const OverMemory&) {
+      throw;
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& error) {
+      warnings.add(std::string(error.what()) + ": its materials are grey");
     }
-    std::string_view rest = whole;
-    for (std::string_view name; !(name = next_token(rest)).empty();) body(name);
+  };
+  for (std::size_t i = 0; i < libraries.size(); ++i) {
+    const std::string_view whole = libraries[i];
+    bool is_whole =
+        files.existing(source.folder, whole, NamedFiles::ByBaseName::kNever).has_value();
+    std::string_view rest = is_whole ? "" : whole;
+    is_whole = true;
+    for (std::string_view name; !(name = next_token(rest)).empty();)
+      if (to_lower(name).ends_with(".mtl") ||
+          files.existing(source.folder, name, NamedFiles::ByBaseName::kAlways)) {
+        find(name);
+        is_whole = false;
+      }
+    if (is_whole) find(whole);
   }
 }
 
@@ -70,15 +81,16 @@ std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh
   const NamedFiles files(source);
   MtlReader reader(source, files, appearance, warnings);
   NameTable seen(source.work().memory);
-  for_each_library(source, libraries, [&](std::string_view name) {
-    const std::filesystem::path path = files.find(source.folder, name, {source.name, "mtllib"});
+  const auto read = [&](std::string_view name, const std::filesystem::path& path) {
     const std::string key = path.lexically_normal().string();
     if (seen.find(key)) return;
     seen.find_or_add(key);
     const std::string printed = printable_path(source.folder, name);
     if (const auto file = open_library(path, printed, warnings))
       reader.read(file->text(), path.parent_path(), printed);
-  });
+  };
+  for_each_library(source, files, libraries, warnings, read);
+  if (auto warning = files.warning(source.name)) warnings.add(std::move(*warning));
   for (std::size_t i = 0; i < materials.size() && !libraries.empty(); ++i)
     if (!materials[i].name.empty() && !reader.describes(i))
       warnings.add(source.name + ": no MTL file describes material " +
@@ -88,9 +100,9 @@ std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh
 
 void report_obj_libraries(const MeshSource& source, const NameTable& libraries) {
   if (source.options.named_files == nullptr) return;
-  const NamedFiles files(source);
-  for_each_library(source, libraries,
-                   [&](std::string_view name) { files.report(source.folder / name); });
+  Warnings ignored;
+  for_each_library(source, NamedFiles(source), libraries, ignored,
+                   [](std::string_view, const std::filesystem::path&) {});
 }
 
 }  // namespace voxdag

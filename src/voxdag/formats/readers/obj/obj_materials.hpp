@@ -11,7 +11,7 @@ namespace voxdag {
 
 /// Fills appearance.materials from the MTL files that the `mtllib` statements with the arguments
 /// `libraries` name. Materials that no file describes are grey. Returns the warnings. Throws
-/// Error for a name outside the OBJ file's folder.
+/// OverMemory and Cancelled.
 std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh& mesh,
                                             const NameTable& libraries, std::size_t bad_references,
                                             Appearance& appearance);

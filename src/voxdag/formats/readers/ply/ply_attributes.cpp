@@ -171,17 +171,22 @@ void PlyAttributes::read_materials(const Mesh& mesh, std::vector<std::string>& w
   const std::size_t used = !has_uvs || header_.textures.empty() ? 0
                            : by_number                          ? header_.textures.size()
                                                                 : 1;
+  std::vector<int> images(used, -1);  // by texture
   const NamedFiles files(source_);
-  for (std::size_t i = 0; i < used; ++i) {
-    const std::string_view name = header_.textures[i];
-    const std::filesystem::path path =
-        files.find(source_.folder, name, {source_.name, "comment TextureFile"});
-    appearance_.images.push_back({printable_path(source_.folder, name), path, {}});
-  }
+  for (std::size_t i = 0; i < used; ++i) try {
+      const std::string_view name = header_.textures[i];
+      const std::filesystem::path path =
+          files.find(source_.folder, name, {source_.name, "comment TextureFile"});
+      images[i] = static_cast<int>(appearance_.images.size());
+      appearance_.images.push_back({printable_path(source_.folder, name), path, {}});
+    } catch (const Error& error) {
+      warnings.push_back(std::string(error.what()) + ": the texture is ignored");
+    }
+  if (auto warning = files.warning(source_.name)) warnings.push_back(std::move(*warning));
   const int components = std::max(vertex_.color_components, face_.color_components);
   for (Material& material : materials) {
     const auto number = by_number ? static_cast<std::size_t>(&material - materials.data()) : 0;
-    if (number < used) material.color_map.image = static_cast<int>(number);
+    if (number < used) material.color_map.image = images[number];
     if (components == 4) material.alpha_mode = AlphaMode::kBlend;
     if (components == 0) material.base_color = kDefaultColor;
   }

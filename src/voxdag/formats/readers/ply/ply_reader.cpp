@@ -9,7 +9,9 @@ namespace voxdag {
 MeshWithAppearance read_ply(const MeshSource& source, ReadParts parts) {
   const PlyHeader header = parse_ply_header(source);
   const NamedFiles files(source);
-  for (const std::string_view name : header.textures) files.report(source.folder / name);
+  for (const std::string_view name : header.textures)
+    if (const auto file = files.existing(source.folder, name, NamedFiles::ByBaseName::kAlways))
+      files.report(*file);
   const PlyFields fields(header);
   std::optional<PlyAttributes> attributes;
   MeshWithAppearance result;
