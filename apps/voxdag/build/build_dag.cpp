@@ -62,20 +62,10 @@ std::string table_of(const DagReport& dag, const StageSeconds& seconds) {
       human_seconds(seconds.write), human_count(rate), human_bytes(peak_resident_bytes()));
 }
 
-/// Reads the mesh, and its appearance if attributes are wanted.
-MeshWithAppearance read_source(const BuildArguments& arguments, const MeshAccess& access,
-                               Session& session) {
-  if (arguments.attributes.needs_shading())
-    return read_mesh_file_with_appearance(session.subject, access, session);
-  MeshWithAppearance source;
-  source.mesh = read_mesh_file(session.subject, access, session);
-  return source;
-}
-
 /// Returns the DAG with the voxels inside. Errors name the mesh and what else could be done.
 Svdag fill(const SvdagView& cover, const Mesh& mesh, const Grid& grid,
            const BuildArguments& arguments, Work work, Session& session) {
-  const SolidOptions options{*arguments.solid, arguments.winding_threshold};
+  const SolidOptions options{*arguments.solid, arguments.winding_threshold, arguments.by_centre};
   try {
     return fill_solid(cover, mesh, grid, options, work);
   } catch (const Cancelled&) {
@@ -101,16 +91,20 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   const Work work(&memory, &session.progress);
   MeshAccess access = arguments.access;
   access.memory = &memory;
-  MeshWithAppearance source = read_source(arguments, access, session);
+  access.objects = arguments.attributes.options.materials;
+  JoinedMeshes meshes =
+      read_mesh_files(arguments.meshes, arguments.attributes.needs_shading(), access, session);
+  MeshWithAppearance& source = meshes.source;
   Mesh& mesh = source.mesh;
-  check_materials(arguments.attributes, mesh, session.subject);
+  NamedIds ids;
+  if (access.objects) ids = named_ids(arguments.attributes.ids, meshes, arguments.meshes, &memory);
   seconds.read = watch.lap();
 
   DagReport report;
   report.metadata.grid = grid_for(mesh, arguments.grid);
   arguments.attributes.check_levels(report.metadata.grid.levels);
-  report.metadata.source = {std::filesystem::path(session.subject).filename().string(),
-                            mesh.vertices.size(), mesh.triangles.size()};
+  report.metadata.source = {names_of(arguments.meshes), mesh.vertices.size(),
+                            mesh.triangles.size()};
   report.metadata.program = written_by();
   report.metadata.build = build_settings(arguments);
   BuildResult result = build_svdag(mesh, report.metadata.grid, arguments.method, work);
@@ -120,11 +114,17 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
     source = {};
   };
   seconds.build = watch.lap();
+  Svdag cover;
+  MemoryReservation cover_bytes;
   if (arguments.solid) {
-    result.dag = fill(result.dag.view(), mesh, report.metadata.grid, arguments, work, session);
+    cover = std::move(result.dag);
+    cover_bytes = std::move(result.memory);
+    result.dag = fill(cover.view(), mesh, report.metadata.grid, arguments, work, session);
     result.memory = MemoryReservation(&memory, result.dag.view().bytes());
     seconds.solid = watch.lap();
+    if (!has_attributes) cover = {}, cover_bytes = {};
   }
+  const SvdagView cover_view = cover.view();
   if (!has_attributes) free_source();
 
   work.poll();
@@ -143,8 +143,10 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
     if (arguments.attributes.needs_shading())
       shading.emplace(mesh, source.appearance, &warnings, work);
     print_warnings(warnings, session);
-    attributes = build_wanted_attributes(arguments.attributes, source, view,
+    attributes = build_wanted_attributes(arguments.attributes, source, ids, view,
+                                         arguments.solid ? &cover_view : nullptr,
                                          shading ? &*shading : nullptr, report.metadata, work);
+    cover = {}, cover_bytes = {};
     seconds.attributes = watch.lap();
   }
   if (has_attributes) free_source();
@@ -169,8 +171,8 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   if (session.json) {
     fmt::print("{}", json_text(json_of(report, result.report, seconds)));
   } else if (!session.quiet) {
-    fmt::print("{}: {}\n{}", arguments.output, human_bytes(report.file_bytes),
-               table_of(report, seconds));
+    fmt::print("{}: {}\n{}{}", arguments.output, human_bytes(report.file_bytes),
+               transform_table(access.transform, arguments.meshes), table_of(report, seconds));
     if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
   }
 }

@@ -190,7 +190,7 @@ Box3d SharedMesh::used_bounds() {
       for (const std::uint32_t vertex : triangles[t]) {
         const Vec3f& position = vertices[vertex];
         if (!is_finite(position)) bad = std::min(bad, t);
-        of_step.extend(position);
+        of_step.extend(place(position));
       }
     release();
     const std::lock_guard guard(mutex);

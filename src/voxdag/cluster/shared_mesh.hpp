@@ -23,6 +23,7 @@
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/formats/readers/mesh_chunks.hpp"
+#include "voxdag/mesh/input_transform.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
@@ -84,6 +85,11 @@ class SharedMesh {
   SharedMesh(Ranks& ranks, const WorkFolder& folder, const std::filesystem::path& path,
              const ReadOptions& reading, std::size_t chunk_bytes);
 
+  /// Moves the vertices that place() returns and used_bounds() holds.
+  void move(const InputTransform& transform) { transform_ = transform; }
+  /// Returns where a vertex lies that vertices() has.
+  Vec3f place(Vec3f vertex) const { return transform_.vertex(vertex); }
+
   const ArrayFiles<Vec3f>& vertices() const { return *vertices_; }
   const ArrayFiles<Triangle>& triangles() const { return *triangles_; }
   /// Returns the number of vertices that read_mesh() gives: vertices() can repeat some. Collective.
@@ -121,6 +127,7 @@ class SharedMesh {
   std::vector<ChunkCounts> starts_;  ///< Contents of all chunks before each; then of all.
   std::optional<ArrayFiles<Vec3f>> vertices_;
   std::optional<ArrayFiles<Triangle>> triangles_;
+  InputTransform transform_;
 };
 
 }  // namespace voxdag

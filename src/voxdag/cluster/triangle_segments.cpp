@@ -52,8 +52,9 @@ Batch map_batch(const SharedMesh& mesh, const Grid& grid, const CellFinder& find
     const Triangle& t = triangles[i];
     pieces.clear();
     quantize_triangle(grid,
-                      {static_cast<Vec3d>(vertices[t[0]]), static_cast<Vec3d>(vertices[t[1]]),
-                       static_cast<Vec3d>(vertices[t[2]])},
+                      {static_cast<Vec3d>(mesh.place(vertices[t[0]])),
+                       static_cast<Vec3d>(mesh.place(vertices[t[1]])),
+                       static_cast<Vec3d>(mesh.place(vertices[t[2]]))},
                       pieces);
     for (const QuantizedTriangle& piece : pieces) {
       const auto index = static_cast<std::uint32_t>(batch.triangles.size());
