@@ -91,7 +91,7 @@ CountedVector<GltfInstance> find_gltf_instances(const GltfFile& file) {
     if (node["mesh"].exists()) {
       const std::uint64_t mesh = node["mesh"].whole();
       file.item(GltfArray::kMeshes, mesh, node);
-      instances.push_back({static_cast<std::uint32_t>(mesh), transform});
+      instances.push_back({static_cast<std::uint32_t>(mesh), transform, index});
     }
     const GltfItems children = node["children"].items();
     for (std::size_t i = children.size(); i-- > 0;)

@@ -2,6 +2,7 @@
 /// Finds the meshes that a glTF scene shows, and their transforms.
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "voxdag/core/vec.hpp"
 #include "voxdag/formats/readers/gltf/gltf_file.hpp"
@@ -36,6 +37,7 @@ GltfTransform gltf_node_transform(const GltfValue& node);
 struct GltfInstance {
   std::uint32_t mesh;  ///< Index into the array `meshes`.
   GltfTransform transform;
+  std::optional<std::uint64_t> node = {};  ///< Index into the array `nodes`.
 };
 
 /// Returns the instances of the default scene. Without a default scene, returns those of the first
