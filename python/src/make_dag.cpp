@@ -9,6 +9,7 @@
 #include "run_work.hpp"
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/builders/attributes/cut_alpha.hpp"
+#include "voxdag/builders/attributes/inside_attributes.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/solid/solid_settings.hpp"
 #include "voxdag/builders/voxelize/grid_request.hpp"
@@ -28,13 +29,21 @@ namespace {
 
 using Bounds = std::array<std::array<double, 3>, 2>;
 
+/// Raises ValueError if there is a resolution that no grid can have.
+std::optional<std::int64_t> checked(const std::optional<std::int64_t>& resolution) {
+  if (resolution && (*resolution < 1 || *resolution > 1 << kMaxLevels))
+    throw py::value_error("resolution must be from 1 to 1048576");
+  return resolution;
+}
+
 GridRequest grid_request(const std::optional<std::int64_t>& resolution,
                          const std::optional<double>& pitch, const std::optional<Bounds>& bounds) {
   if (resolution.has_value() == pitch.has_value())
     throw py::value_error("give exactly one of resolution and pitch");
   if (pitch && !(*pitch > 0)) throw py::value_error("pitch must be positive");
-  GridRequest request{std::nullopt, pitch, std::nullopt};
-  if (resolution) request.levels = levels_of(*resolution);
+  GridRequest request;
+  request.voxel_size = pitch;
+  request.resolution = checked(resolution);
   if (bounds) {
     const auto& [lo, hi] = *bounds;
     request.bounds = {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
@@ -62,8 +71,11 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
   metadata.source = {name, mesh.vertices.size(), mesh.triangles.size()};
   metadata.build = settings_of(grid);
   if (solid) add_solid_settings({*solid}, metadata.build);
-  Svdag dag = build_svdag(mesh, metadata.grid, {}, work).dag;
-  if (solid) dag = fill_solid(dag.view(), mesh, metadata.grid, {*solid}, work);
+  Svdag dag = build_svdag(mesh, metadata.grid, {}, work).dag, cover;
+  if (solid) {
+    cover = std::move(dag);
+    dag = fill_solid(cover.view(), mesh, metadata.grid, {*solid}, work);
+  }
   DagAttributes attributes;
   if (colors) {
     const SurfaceShading shading(mesh, source.appearance, nullptr, work);
@@ -76,7 +88,15 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
     AttributeOptions options;
     options.colors = true;
     options.finest_level = metadata.grid.levels;
-    attributes = build_attributes(mesh, metadata.grid, dag.view(), &shading, options, work);
+    if (solid) {
+      AttributeOptions exact = options;
+      exact.color_bound = 0;
+      const DagAttributes surface =
+          build_attributes(mesh, metadata.grid, cover.view(), &shading, exact, work);
+      attributes = inside_attributes({cover.view(), surface.view()}, dag.view(), options, {}, work);
+    } else {
+      attributes = build_attributes(mesh, metadata.grid, dag.view(), &shading, options, work);
+    }
     metadata.attributes.resolution = metadata.grid.resolution();
     metadata.attributes.colors = {options.color_bound, attributes.color_errors.squared};
   }
@@ -129,7 +149,6 @@ DagPointer build(const Array<double>& vertices, const Array<std::int64_t>& faces
                  const std::optional<Array<std::uint8_t>>& colors) {
   const GridRequest grid = grid_request(resolution, pitch, bounds);
   const std::optional<SolidRule> rule = rule_of(solid);
-  if (rule && colors) throw py::value_error("a solid has no colours inside: leave out colors");
   const MeshWithAppearance source = mesh_of(vertices, faces, colors);
   return run_work([&](Work work) {
     return build_mesh(source, grid, rule, colors.has_value(), false, "arrays", work);
@@ -142,7 +161,6 @@ DagPointer build_file(const std::filesystem::path& path, std::optional<std::int6
   if (alpha != "cut" && alpha != "keep") throw py::value_error("alpha must be \"cut\" or \"keep\"");
   const GridRequest grid = grid_request(resolution, pitch, bounds);
   const std::optional<SolidRule> rule = rule_of(solid);
-  if (rule && colors) throw py::value_error("a solid has no colours inside: leave out colors");
   return run_work([&](Work work) {
     const ReadOptions options{.work = work};
     MeshWithAppearance source;
@@ -195,15 +213,13 @@ DagPointer import_source(const VoxelSource& source, const ImportOptions& options
 /// Returns the grid of voxels that have numbers: by default the smallest one that holds them.
 GridRequest coords_grid(const std::optional<std::int64_t>& resolution) {
   GridRequest request;
-  if (resolution) request.levels = levels_of(*resolution);
+  request.resolution = checked(resolution);
   return request;
 }
 
 ImportOptions import_options(const GridRequest& grid) {
   ImportOptions options;
-  options.levels = grid.levels;
-  options.voxel_size = grid.voxel_size;
-  options.bounds = grid.bounds;
+  static_cast<GridRequest&>(options) = grid;
   options.folder = std::filesystem::temp_directory_path();
   return options;
 }

@@ -41,11 +41,12 @@ def build(vertices, faces=None, *, resolution=None, pitch=None, bounds=None, sol
     """Builds the DAG of the voxels that triangles meet.
 
     vertices: (N, 3) float; faces: (M, 3) indices. Or one mesh of trimesh or Open3D.
-    resolution: voxels per side of the grid, a power of two; or pitch: side of a voxel.
+    resolution: voxels along the longest side, 1 to 2^20; or pitch: side of a voxel.
     bounds: ((x0, y0, z0), (x1, y1, z1)), the box that the grid holds; default: that of the mesh.
     solid: also set the voxels inside: True or "parity" for closed meshes, "winding" for meshes with
     holes, "flood" for what the voxels enclose.
     colors: (N, 3) uint8, sRGB, of the vertices; None: those of the mesh object, if it is no solid.
+    Voxels inside a solid take the colour of the nearest surface.
     """
     if faces is None:
         vertices, faces, found = _mesh_arrays(vertices)

@@ -178,7 +178,10 @@ TEST_F(Build, AnOutputOfAnEarlierBuildIsReplaced) {
 TEST_F(Build, BadUsageIsRefusedBeforeAnyWork) {
   expect_failure(build({}), 2, "exactly one of");
   expect_failure(build({"-r", "64", "--voxel-size", "1"}), 2, "exactly one of");
-  expect_failure(build({"-r", "1000"}), 2, "nearest are 512 and 1024");
+  expect_failure(build({"-r", "0"}), 2, "from 1 to 1048576");
+  expect_failure(build({"-r", "1025K"}), 2, "from 1 to 1048576");
+  expect_failure(build({"-r", "64", "--snap"}), 2, "--snap");
+  expect_failure(build({"-r", "64", "--up", "w"}), 2, "none of x, y and z");
   expect_failure(build({"-r", "64", "--bounds", "0,0,0,1,1"}), 2, "6 numbers");
   expect_failure(build({"--voxel-size", "-1"}), 2, "greater than zero");
   expect_failure(build({"-r", "64", "--method", "magic"}), 2, "--method");
@@ -340,7 +343,8 @@ TEST_F(Build, AnOpenMeshHasNoInside) {
   expect_nothing_left();
   EXPECT_NE(result.err.find("--solid winding"), std::string::npos) << result.err;
   expect_failure(build({"-r", "64", "--solid", "full"}), 2, "none of parity, winding and flood");
-  expect_failure(build({"-r", "64", "--solid", "flood", "--color"}), 2, "--solid");
+  expect_failure(build({"-r", "64", "--solid", "flood", "--rule", "centre"}), 2, "--rule");
+  expect_failure(build({"-r", "64", "--color", "--inside-color", "1,2,3"}), 2, "--inside-color");
 }
 
 TEST_F(Build, AnOpenMeshIsFilledByItsWindingNumber) {

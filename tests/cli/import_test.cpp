@@ -66,7 +66,8 @@ TEST_F(ImportCommand, PointsNeedAGrid) {
   write_text(path("b.binvox"), "#binvox 1\ndim 4 4 4\nscale 2\ndata\n");
   refused({path("b.binvox"), "--voxel-size", "1"}, 1, "says itself where its voxels lie");
   refused({path("b.binvox"), "--origin", "1,2,3"}, 1, "says itself where its voxels lie");
-  refused({path("p.xyz"), "-r", "16", "--origin", "1,2,3"}, 1, "--origin goes with --voxel-size");
+  refused({path("p.xyz"), "-r", "16", "--origin", "1,2,3", "--bounds", "0,0,0,1,1,1"}, 1,
+          "--origin goes with -r or --voxel-size");
   refused({path("b.binvox")}, 1, "ends after 0 of 64 values");
 }
 

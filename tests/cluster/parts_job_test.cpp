@@ -43,7 +43,7 @@ Mesh crowd() {
 }
 
 std::vector<Scene> scenes() {
-  const GridRequest elsewhere{6, std::nullopt, Box3d{{5, 5, 5}, {6, 6, 6}}},
+  const GridRequest elsewhere{.resolution = 64, .bounds = Box3d{{5, 5, 5}, {6, 6, 6}}},
       cut{9, std::nullopt, Box3d{{0.2, 0.1, 0.3}, {0.6, 0.5, 0.7}}},
       by_size{std::nullopt, 1.0 / 300, std::nullopt},
       unit{10, std::nullopt, Box3d{{0, 0, 0}, {1, 1, 1}}};

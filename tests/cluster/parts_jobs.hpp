@@ -22,7 +22,7 @@ struct Scene {
   GridRequest grid;
 };
 
-inline GridRequest levels(int levels) { return {levels, std::nullopt, std::nullopt}; }
+inline GridRequest levels(int levels) { return {.resolution = std::int64_t{1} << levels}; }
 
 /// Returns `count` triangles with random corners.
 inline Mesh random_mesh(int count) {

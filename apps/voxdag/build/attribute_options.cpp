@@ -3,11 +3,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
 
 #include "cli/parse.hpp"
 #include "cli/usage_error.hpp"
+#include "voxdag/builders/attributes/inside_attributes.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/mesh/join_meshes.hpp"
 
 namespace voxdag::cli {
 
@@ -20,10 +23,28 @@ bool parse_cut(const std::string& text) {
   return text == "cut";
 }
 
+Value8 parse_color(const std::string& text) {
+  const Vec3d channels = parse_vec3(text);
+  Value8 color{};
+  for (int c = 0; c < 3; ++c) {
+    color[c] = static_cast<std::uint8_t>(std::clamp(channels[c], 0.0, 255.0));
+    if (color[c] != channels[c])
+      throw std::invalid_argument("must be three whole numbers from 0 to 255");
+  }
+  return color;
+}
+
+IdKind parse_ids(const std::string& text) {
+  if (text == "material") return IdKind::kMaterial;
+  if (text == "object") return IdKind::kObject;
+  if (text == "file") return IdKind::kFile;
+  throw std::invalid_argument("\"" + text + "\" is not file, object or material");
+}
+
 }  // namespace
 
 void add_attribute_options(const Command& command, AttributeArguments& arguments,
-                           const std::string& group) {
+                           const std::string& group, const std::function<bool()>& is_solid) {
   AttributeOptions& options = arguments.options;
   const auto is_wanted = [&arguments] { return arguments.is_wanted(); };
   command
@@ -35,7 +56,18 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
   command
       .flag("--material-ids", options.materials,
             "Also store the material of all cells, as its number in the mesh: the one with the "
-            "largest area in the cell")
+            "largest area in the cell. A mesh without materials has the ids of its objects")
+      .in_group(group);
+  command
+      .parsed(
+          "--ids", arguments.ids,
+          [&options](const std::string& text) {
+            options.materials = true;
+            return parse_ids(text);
+          },
+          "file|object|material",
+          "Store such ids, in place of materials: files in the order of the command line; objects "
+          "(`o` and `g` of OBJ, nodes of glTF) in that of the file. `voxdag info` shows the names")
       .in_group(group);
   command
       .parsed(
@@ -63,6 +95,13 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
               "Largest angle between a stored normal and the filtered one")
       .only_if([&options] { return options.normals; }, "without --normal")
       .in_group(group);
+  command
+      .parsed("--inside-color", arguments.inside_color, parse_color, "R,G,B",
+              "Colour of the voxels inside a solid, 0 to 255 each (default: that of the nearest "
+              "surface)")
+      .only_if(is_solid, "without --solid")
+      .only_if([&options] { return options.colors; }, "without --color")
+      .in_group(group);
 }
 
 void AttributeArguments::check_levels(int dag_levels) const {
@@ -72,34 +111,63 @@ void AttributeArguments::check_levels(int dag_levels) const {
                                  std::int64_t{1} << *levels, std::int64_t{1} << dag_levels));
 }
 
-void check_materials(const AttributeArguments& arguments, const Mesh& mesh,
-                     const std::string& file) {
-  if (!arguments.options.materials) return;
-  if (mesh.triangle_materials.empty())
-    throw Error(file, "", "has no materials, so that --material-ids has nothing to store");
-  if (mesh.materials.size() > kMaxMaterials)
-    throw Error(file, "",
-                fmt::format("has {} materials, but --material-ids can store {} at most",
-                            mesh.materials.size(), kMaxMaterials));
+NamedIds named_ids(IdKind kind, const JoinedMeshes& meshes, const std::vector<std::string>& files,
+                   MemoryBudget* memory) {
+  const Mesh& mesh = meshes.source.mesh;
+  const std::string& first = files.front();
+  NamedIds result{CountedVector<std::uint32_t>(memory), mesh.materials, "material"};
+  if (kind == IdKind::kDefault)
+    kind = mesh.triangle_materials.empty() && !mesh.objects.empty() ? IdKind::kObject
+                                                                    : IdKind::kMaterial;
+  if (kind == IdKind::kMaterial && mesh.triangle_materials.empty())
+    throw Error(first, "", "has no materials, so that --material-ids has nothing to store");
+  if (kind != IdKind::kMaterial) {
+    result.kind = kind == IdKind::kFile ? "file" : "object";
+    if (kind == IdKind::kObject && !mesh.objects.empty()) {
+      result.names = mesh.objects;
+      result.ids = ids_of_runs(mesh.object_runs, mesh.triangles.size(), memory);
+    } else {  // A file that names no objects is one.
+      result.names.clear();
+      for (const std::string& file : files)
+        result.names.push_back(std::filesystem::path(file).filename().string());
+      result.ids = ids_of_runs(meshes.files, mesh.triangles.size(), memory);
+    }
+  }
+  if (result.names.size() > kMaxMaterials)
+    throw Error(first, "",
+                fmt::format("has {} {}s, but --material-ids can store {} at most",
+                            result.names.size(), result.kind, kMaxMaterials));
+  return result;
 }
 
 DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
-                                      const MeshWithAppearance& source, const SvdagView& dag,
+                                      const MeshWithAppearance& source, const NamedIds& ids,
+                                      const SvdagView& dag, const SvdagView* cover,
                                       const SurfaceShading* shading, VdagMetadata& metadata,
                                       Work work) {
   AttributeOptions options = arguments.options;
+  options.ids = ids.view();
   options.finest_level = arguments.levels
                              ? *arguments.levels
                              : finest_level_within(metadata.counts, options,
                                                    std::min(kAttributeBudget, work.memory->left()));
-  DagAttributes attributes =
-      build_attributes(source.mesh, metadata.grid, dag, shading, options, work);
+  AttributeOptions exact = options;
+  if (cover != nullptr) exact.color_bound = 0, exact.normal_bound_degrees = kMinNormalBound;
+  DagAttributes attributes = build_attributes(
+      source.mesh, metadata.grid, cover != nullptr ? *cover : dag, shading, exact, work);
+  if (cover != nullptr) {
+    const MemoryReservation surface(work.memory, attributes.bytes());
+    attributes =
+        inside_attributes({*cover, attributes.view()}, dag, options, arguments.inside_color, work);
+  }
   AttributesMetadata& stored = metadata.attributes;
   stored.resolution = std::int64_t{1} << options.finest_level;
   if (options.colors) stored.colors = {options.color_bound, attributes.color_errors.squared};
   if (options.normals)
     stored.normals = {options.normal_bound_degrees, attributes.normal_errors.absolute};
-  if (options.materials) stored.materials = source.mesh.materials;
+  if (!options.materials) return attributes;
+  stored.materials = ids.names;
+  if (!ids.ids.empty()) metadata.build["ids"] = ids.kind;
   return attributes;
 }
 

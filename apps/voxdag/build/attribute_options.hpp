@@ -1,19 +1,26 @@
 #pragma once
 /// The options of `voxdag build` for colours, normals and materials on a DAG.
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 
 #include "cli/command.hpp"
+#include "cli/mesh_input.hpp"
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
 
 namespace voxdag::cli {
 
+/// What --material-ids stores: by default materials, or objects if the mesh has no materials.
+enum class IdKind { kDefault, kMaterial, kObject, kFile };
+
 struct AttributeArguments {
   AttributeOptions options;
-  std::optional<int> levels;  ///< log2 of --attribute-resolution.
-  std::optional<bool> cut;    ///< Whether --alpha is `cut`.
+  IdKind ids = IdKind::kDefault;
+  std::optional<Value8> inside_color;  ///< Of solids, sRGB encoded; empty: that of the surface.
+  std::optional<int> levels;           ///< log2 of --attribute-resolution.
+  std::optional<bool> cut;             ///< Whether --alpha is `cut`.
 
   bool needs_shading() const { return options.colors || options.normals; }
   bool is_wanted() const { return needs_shading() || options.materials; }
@@ -27,19 +34,32 @@ struct AttributeArguments {
 /// many bytes.
 inline constexpr std::uint64_t kAttributeBudget = std::uint64_t{4} << 30;
 
+/// `is_solid` tells, once all options are parsed, whether the build fills the inside.
 void add_attribute_options(const Command& command, AttributeArguments& arguments,
-                           const std::string& group);
+                           const std::string& group, const std::function<bool()>& is_solid);
 
-/// Throws Error if material ids are wanted, but the mesh has no materials or too many.
-void check_materials(const AttributeArguments& arguments, const Mesh& mesh,
-                     const std::string& file);
+/// The ids of a mesh's triangles, and the names behind them.
+struct NamedIds {
+  CountedVector<std::uint32_t> ids;  ///< Of each triangle; empty if they are those of materials.
+  std::vector<std::string> names;
+  const char* kind = "material";  ///< "material", "object" or "file".
+
+  TriangleIds view() const {
+    return ids.empty() ? TriangleIds{} : TriangleIds{ids, static_cast<std::uint32_t>(names.size())};
+  }
+};
+/// Returns the ids of the triangles of `files`. Throws Error if there are none or too many, and
+/// OverMemory.
+NamedIds named_ids(IdKind kind, const JoinedMeshes& meshes, const std::vector<std::string>& files,
+                   MemoryBudget* memory);
 
 /// Builds the attributes of a DAG at the resolution that the arguments ask for, which must pass
-/// check_levels(). `shading` may be null if the arguments do not need it; `work` has a budget. Uses
-/// metadata.grid and metadata.counts, and sets metadata.attributes. Throws what build_attributes()
-/// throws.
+/// check_levels(). `shading` may be null if the arguments do not need it; `work` has a budget.
+/// `cover` is the surface's DAG if `dag` is that of a solid, else null. Uses metadata.grid and
+/// metadata.counts, and sets metadata.attributes. Throws what build_attributes() throws.
 DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
-                                      const MeshWithAppearance& source, const SvdagView& dag,
+                                      const MeshWithAppearance& source, const NamedIds& ids,
+                                      const SvdagView& dag, const SvdagView* cover,
                                       const SurfaceShading* shading, VdagMetadata& metadata,
                                       Work work);
 

@@ -7,6 +7,7 @@
 #include "build/build_arguments.hpp"
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -22,6 +23,13 @@ bool parse_structure(const std::string& text) {
   return text == "esvo";
 }
 
+/// Returns whether the text names the rule of centres.
+bool parse_voxel_rule(const std::string& text) {
+  if (text == "cover") return false;
+  if (text == "centre" || text == "center") return true;
+  throw std::invalid_argument(fmt::format("\"{}\" is neither cover nor centre", text));
+}
+
 BuildMethod parse_method(const std::string& text) {
   if (text == "hash") return BuildMethod::kHashConsed;
   if (text == "sort") return BuildMethod::kSort;
@@ -30,14 +38,20 @@ BuildMethod parse_method(const std::string& text) {
 }
 
 void add_grid_options(const Command& command, BuildArguments& arguments) {
-  command.parsed("-r,--resolution", arguments.grid.levels, parse_levels, "N",
-                 "Voxels per side: a power of two from 4 to 1048576; 8K is 8192");
+  command.parsed("-r,--resolution", arguments.grid.resolution, parse_resolution, "N",
+                 "Voxels along the longest side: 1 to 1048576; 8K is 8192");
   command.parsed("--voxel-size", arguments.grid.voxel_size, parse_positive, "SIZE",
                  "Instead of -r: side of a voxel, in the units of the mesh");
   command.parsed(
       "--bounds", arguments.grid.bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
       "Box that the grid holds: the grid, a cube, starts at its lower corner (default: the "
       "mesh's bounding box)");
+  command
+      .parsed("--origin", arguments.grid.origin, parse_vec3, "X,Y,Z",
+              "Lower corner of the grid, which ends with the mesh")
+      .only_if([&arguments] { return !arguments.grid.bounds; }, "with --bounds");
+  add_margin_options(command, arguments.grid);
+  add_transform_options(command, arguments.access.transform);
 }
 
 void add_parts_options(const Command& command, BuildArguments& arguments) {
@@ -103,19 +117,25 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
     command.refuse_group(kEsvoOptions, "is for ESVOs only, but the output is a DAG (see --as)");
   if (is_in_parts(arguments) &&
       (arguments.solid || arguments.attributes.is_wanted() || arguments.attributes.cuts_alpha() ||
-       arguments.compact || arguments.method != BuildMethod::kHashConsed))
+       arguments.compact || arguments.meshes.size() > 1 ||
+       arguments.method != BuildMethod::kHashConsed))
     throw UsageError(
         "--work and --parts build the surface's voxels by --method hash: not with --solid, "
         "--color, "
-        "--normal, --material-ids, --alpha cut, --compact or another method");
-  if (arguments.solid && arguments.attributes.cuts_alpha())
-    throw UsageError("--solid fills the whole surface: not with --alpha cut");
+        "--normal, --material-ids, --alpha cut, --compact, several meshes or another method");
+  if (arguments.solid) {
+    if (arguments.attributes.cut.value_or(false))
+      throw UsageError("--solid fills the whole surface: not with --alpha cut");
+    arguments.attributes.cut = false;
+  }
   arguments.access.outputs = {{"--output", arguments.output}};
   check_distinct(arguments.access.outputs, session);
-  if (arguments.grid.levels.has_value() == arguments.grid.voxel_size.has_value())
+  if (arguments.grid.resolution.has_value() == arguments.grid.voxel_size.has_value())
     throw UsageError("give exactly one of -r/--resolution and --voxel-size");
-  if (arguments.grid.levels) arguments.esvo.bake.check_levels(*arguments.grid.levels);
-  if (arguments.grid.levels) arguments.attributes.check_levels(*arguments.grid.levels);
+  if (!arguments.grid.resolution) return;
+  const int levels = levels_of(*arguments.grid.resolution);
+  arguments.esvo.bake.check_levels(levels);
+  arguments.attributes.check_levels(levels);
 }
 
 }  // namespace
@@ -129,20 +149,23 @@ void add_build_command(const Command& program, Session& session) {
       "  voxdag build city.glb -r 16K --bounds 0,0,0,100,100,100 -o block.vdag\n"
       "  voxdag build FlightHelmet.gltf -r 1024 --color --normal -o helmet.vdag\n"
       "  voxdag build FlightHelmet.gltf -r 1024 -o helmet.esvo\n"
-      "  voxdag build sibenik.obj -r 2048 --displace stone:0.1:4 -o sibenik.esvo\n\n"
+      "  voxdag build sibenik.obj -r 2048 --displace stone:0.1:4 -o sibenik.esvo\n"
+      "  voxdag build chair.obj room.glb -r 1000 --ids file -o scene.vdag\n"
+      "  voxdag build part.stl --unit in:mm --voxel-size 0.1 --snap --solid -o part.vdag\n\n"
       "The grid is a cube of 2^L voxels a side. With -r alone, the longest side of the "
-      "mesh's bounding box spans the grid. With --voxel-size alone, the grid is the "
-      "smallest one that holds the mesh. With --bounds, the grid starts at the lower "
-      "corner of the box: with -r, the longest side of the box spans it; with "
+      "mesh's bounding box spans N voxels, from the grid's lower corner on. With --voxel-size "
+      "alone, the grid is the smallest one that holds the mesh. With --bounds, the grid starts at "
+      "the lower corner of the box: with -r, the longest side of the box spans N voxels; with "
       "--voxel-size, it is the smallest grid that holds the box. The build clips the "
-      "mesh to the grid.\n\n"
+      "mesh to the grid. Several meshes, or those of a folder, share one grid.\n\n"
       "By default a DAG stores the shape only: --color, --normal and --material-ids add "
       "values of all its cells. If a texture cannot be read, build warns and uses the "
       "material's colour.");
   command
-      .text("mesh", session.subject, "MESH",
-            "The mesh: OBJ, PLY, STL, OFF, glTF/GLB, or another format if voxdag was built with "
-            "assimp")
+      .repeated(
+          "mesh", arguments->meshes, [](const std::string& text) { return text; }, "MESH...",
+          "The mesh, several, a folder of them or a pattern: OBJ, PLY, STL, OFF, glTF/GLB, or "
+          "another format if voxdag was built with assimp")
       .required();
   command.text("-o,--output", arguments->output, "FILE", "The file to write").required();
   const Option as =
@@ -164,8 +187,16 @@ void add_build_command(const Command& program, Session& session) {
           "odd number of triangles, for closed meshes; winding: voxels around which the surface "
           "winds, for meshes with holes or of overlapping bodies; flood: empty voxels that no way "
           "through empty voxels connects with the sides of the grid")
-      .only_if([arguments = arguments.get()] { return !arguments->attributes.is_wanted(); },
-               "with --color, --normal or --material-ids: the inside has none")
+      .in_group(kDagOptions);
+  command
+      .parsed("--rule", arguments->by_centre, parse_voxel_rule, "cover|centre",
+              "For --solid parity and winding: cover: the voxels that the body meets (default); "
+              "centre: those whose centre is inside")
+      .only_if(
+          [arguments = arguments.get()] {
+            return arguments->solid && *arguments->solid != SolidRule::kFlood;
+          },
+          "without --solid parity or winding")
       .in_group(kDagOptions);
   command
       .parsed("--winding-threshold", arguments->winding_threshold, parse_positive, "W",
@@ -174,7 +205,8 @@ void add_build_command(const Command& program, Session& session) {
       .only_if([arguments = arguments.get()] { return arguments->solid == SolidRule::kWinding; },
                "without --solid winding")
       .in_group(kDagOptions);
-  add_attribute_options(command, arguments->attributes, kDagOptions);
+  add_attribute_options(command, arguments->attributes, kDagOptions,
+                        [arguments = arguments.get()] { return arguments->solid.has_value(); });
   command
       .flag("--compact", arguments->compact,
             "Write the compact form: the geometry takes about a quarter of the bytes; those of "
@@ -193,6 +225,10 @@ void add_build_command(const Command& program, Session& session) {
   add_quiet_option(command, session);
   add_json_option(command, session);
   command.when_parsed([arguments, as, command, &session] {
+    arguments->meshes = expand_inputs(
+        arguments->meshes, {".obj", ".ply", ".stl", ".off", ".gltf", ".glb", ".3mf", ".dae"});
+    session.subject = arguments->meshes.front();
+    session.inputs = arguments->meshes;
     if (!as.is_given()) arguments->as_esvo = arguments->output.ends_with(".esvo");
     check_build_arguments(command, *arguments, session);
     session.work = [arguments, &session] {

@@ -3,10 +3,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "build/attribute_options.hpp"
 #include "build/bake_ao.hpp"
 #include "build/displace_option.hpp"
+#include "build/placing_options.hpp"
 #include "cli/mesh_input.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
@@ -23,6 +25,7 @@ struct EsvoArguments {
 };
 
 struct BuildArguments {
+  std::vector<std::string> meshes;  ///< The files.
   std::string output;
   MeshAccess access;
   GridRequest grid;
@@ -33,19 +36,20 @@ struct BuildArguments {
   AttributeArguments attributes;   ///< For DAGs.
   std::optional<SolidRule> solid;  ///< For DAGs.
   double winding_threshold = 0.5;
+  bool by_centre = false;   ///< SolidOptions::by_centre.
   bool compact = false;     ///< Write the compact form.
   std::string work_folder;  ///< For DAGs: where the work of many processes lies; empty: none.
   std::uint64_t parts = 0;  ///< For DAGs: least number of parts; 0: not given.
   EsvoArguments esvo;
 };
 
-/// Builds a DAG from the mesh file session.subject, writes it, and prints the summary.
+/// Builds a DAG from the mesh files, writes it, and prints the summary.
 void build_dag_file(const BuildArguments& arguments, Session& session);
 
 /// Builds a DAG in parts, alone or with the other processes of the job; see cluster/parts_job.hpp.
 void build_dag_in_parts(const BuildArguments& arguments, Session& session);
 
-/// Builds an ESVO from the mesh file session.subject with its textures, writes it, and prints the
+/// Builds an ESVO from the mesh files with their textures, writes it, and prints the
 /// summary.
 void build_esvo_file(const BuildArguments& arguments, Session& session);
 
@@ -53,7 +57,9 @@ void build_esvo_file(const BuildArguments& arguments, Session& session);
 inline std::map<std::string, std::string> build_settings(const BuildArguments& arguments) {
   std::map<std::string, std::string> settings = settings_of(arguments.grid);
   if (arguments.solid)
-    add_solid_settings({*arguments.solid, arguments.winding_threshold}, settings);
+    add_solid_settings({*arguments.solid, arguments.winding_threshold, arguments.by_centre},
+                       settings);
+  add_settings(arguments.access.transform, settings);
   return settings;
 }
 

@@ -63,20 +63,10 @@ std::string table_of(const DagReport& dag, const StageSeconds& seconds) {
       human_seconds(seconds.write), human_count(rate), human_bytes(peak_resident_bytes()));
 }
 
-/// Reads the mesh, and its appearance if it is needed.
-MeshWithAppearance read_source(const BuildArguments& arguments, const MeshAccess& access,
-                               Session& session) {
-  if (arguments.attributes.needs_shading() || arguments.attributes.cuts_alpha())
-    return read_mesh_file_with_appearance(session.subject, access, session);
-  MeshWithAppearance source;
-  source.mesh = read_mesh_file(session.subject, access, session);
-  return source;
-}
-
 /// Returns the DAG with the voxels inside. Errors name the mesh and what else could be done.
 Svdag fill(const SvdagView& cover, const Mesh& mesh, const Grid& grid,
            const BuildArguments& arguments, Work work, Session& session) {
-  const SolidOptions options{*arguments.solid, arguments.winding_threshold};
+  const SolidOptions options{*arguments.solid, arguments.winding_threshold, arguments.by_centre};
   try {
     return fill_solid(cover, mesh, grid, options, work);
   } catch (const Cancelled&) {
@@ -102,16 +92,21 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   const Work work(&memory, &session.progress);
   MeshAccess access = arguments.access;
   access.memory = &memory;
-  MeshWithAppearance source = read_source(arguments, access, session);
+  access.objects = arguments.attributes.options.materials;
+  const bool needs_appearance =
+      arguments.attributes.needs_shading() || arguments.attributes.cuts_alpha();
+  JoinedMeshes meshes = read_mesh_files(arguments.meshes, needs_appearance, access, session);
+  MeshWithAppearance& source = meshes.source;
   Mesh& mesh = source.mesh;
-  check_materials(arguments.attributes, mesh, session.subject);
+  NamedIds ids;
+  if (access.objects) ids = named_ids(arguments.attributes.ids, meshes, arguments.meshes, &memory);
   seconds.read = watch.lap();
 
   DagReport report;
   report.metadata.grid = grid_for(mesh, arguments.grid);
   arguments.attributes.check_levels(report.metadata.grid.levels);
-  report.metadata.source = {std::filesystem::path(session.subject).filename().string(),
-                            mesh.vertices.size(), mesh.triangles.size()};
+  report.metadata.source = {names_of(arguments.meshes), mesh.vertices.size(),
+                            mesh.triangles.size()};
   report.metadata.program = written_by();
   report.metadata.build = build_settings(arguments);
   BuildResult result = build_svdag(mesh, report.metadata.grid, arguments.method, work);
@@ -121,13 +116,19 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
     source = {};
   };
   seconds.build = watch.lap();
+  Svdag cover;
+  MemoryReservation cover_bytes;
   if (arguments.solid) {
-    result.dag = fill(result.dag.view(), mesh, report.metadata.grid, arguments, work, session);
+    cover = std::move(result.dag);
+    cover_bytes = std::move(result.memory);
+    result.dag = fill(cover.view(), mesh, report.metadata.grid, arguments, work, session);
     result.memory = MemoryReservation(&memory, result.dag.view().bytes());
     seconds.solid = watch.lap();
+    if (!has_attributes) cover = {}, cover_bytes = {};
   }
+  const SvdagView cover_view = cover.view();
   std::optional<SurfaceShading> shading;
-  if (arguments.attributes.needs_shading() || arguments.attributes.cuts_alpha()) {
+  if (needs_appearance) {
     std::vector<std::string> warnings;
     shading.emplace(mesh, source.appearance, &warnings, work);
     print_warnings(warnings, session);
@@ -157,8 +158,10 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   if (has_attributes) {
     watch.lap();
     const MemoryReservation dag_bytes(&memory, view.bytes());
-    attributes = build_wanted_attributes(arguments.attributes, source, view,
+    attributes = build_wanted_attributes(arguments.attributes, source, ids, view,
+                                         arguments.solid ? &cover_view : nullptr,
                                          shading ? &*shading : nullptr, report.metadata, work);
+    cover = {}, cover_bytes = {};
     seconds.attributes += watch.lap();
     shading.reset();
     free_source();
@@ -184,8 +187,8 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   if (session.json) {
     fmt::print("{}", json_text(json_of(report, result.report, seconds)));
   } else if (!session.quiet) {
-    fmt::print("{}: {}\n{}", arguments.output, human_bytes(report.file_bytes),
-               table_of(report, seconds));
+    fmt::print("{}: {}\n{}{}", arguments.output, human_bytes(report.file_bytes),
+               transform_table(access.transform, arguments.meshes), table_of(report, seconds));
     if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
   }
 }

@@ -78,11 +78,12 @@ void print_summary(const EsvoReport& report, const EsvoSeconds& seconds,
   }
   if (session.quiet) return;
   fmt::print(
-      "{}: {}\n{}\n"
+      "{}: {}\n{}{}\n"
       "  time          {}: read {}, textures {}, build and write {}\n"
       "  rate          {} voxels/s\n"
       "  peak memory   {}\n",
-      arguments.output, human_bytes(report.file_bytes), esvo_table(report),
+      arguments.output, human_bytes(report.file_bytes),
+      transform_table(arguments.access.transform, arguments.meshes), esvo_table(report),
       human_seconds(seconds.total()), human_seconds(seconds.read), human_seconds(seconds.textures),
       human_seconds(seconds.build), human_count(rate), human_bytes(peak_resident_bytes()));
   if (arguments.stats) fmt::print("\n{}", esvo_level_table(report));
@@ -100,7 +101,7 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   const Work work(&memory, &session.progress);
   MeshAccess access = arguments.access;
   access.memory = &memory;
-  MeshWithAppearance source = read_mesh_file_with_appearance(session.subject, access, session);
+  const MeshWithAppearance source = read_mesh_files(arguments.meshes, true, access, session).source;
   seconds.read = watch.lap();
   std::vector<std::string> warnings;
   const SurfaceShading shading(source.mesh, source.appearance, &warnings, work);
@@ -118,8 +119,8 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   if (displaced && !grid.bounds) grid.bounds = displaced_bounds(*displaced, source.mesh);
   metadata.grid = grid_for(source.mesh, grid);
   esvo.bake.check_levels(metadata.grid.levels);
-  metadata.source = {std::filesystem::path(session.subject).filename().string(),
-                     source.mesh.vertices.size(), source.mesh.triangles.size()};
+  metadata.source = {names_of(arguments.meshes), source.mesh.vertices.size(),
+                     source.mesh.triangles.size()};
   metadata.program = written_by();
   metadata.build = settings_of(arguments);
   if (displaced) metadata.build["displaced"] = "yes";

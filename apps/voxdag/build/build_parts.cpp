@@ -78,6 +78,7 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
   job.mesh = session.subject;
   job.output = arguments.output;
   job.grid = arguments.grid;
+  job.transform = arguments.access.transform;
   job.parts = arguments.parts;
   arguments.access.give_rights(job.reading);
   std::vector<std::string> warnings;
@@ -106,7 +107,8 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
   if (session.json) {
     fmt::print("{}", json_text(json_of(report, parts, process.count())));
   } else if (!session.quiet) {
-    fmt::print("{}: {}\n{}", arguments.output, human_bytes(report.file_bytes),
+    fmt::print("{}: {}\n{}{}", arguments.output, human_bytes(report.file_bytes),
+               transform_table(job.transform, arguments.meshes),
                table_of(report, parts, process.count()));
     if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
   }

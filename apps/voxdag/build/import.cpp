@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "build/placing_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
@@ -16,11 +17,14 @@
 #include "voxdag/file/report/dag_report.hpp"
 #include "voxdag/file/report/human.hpp"
 #include "voxdag/formats/imports/import_model.hpp"
+#include "voxdag/formats/imports/moved_source.hpp"
 
 namespace voxdag::cli {
 namespace {
 
 struct ImportArguments {
+  std::vector<std::string> files;
+  TransformRequest transform;
   std::string output;
   ImportOptions options;
   std::optional<double> threshold;  ///< For volumes.
@@ -33,14 +37,17 @@ struct ImportArguments {
 void check_grid_options(const VoxelSource& source, const ImportOptions& options) {
   const bool sets_place = options.voxel_size || options.origin;
   if (source.has_points()) {
-    if (!options.levels && !options.voxel_size && !source.grid())
+    if (!options.resolution && !options.voxel_size && !source.grid())
       throw Error("", "", "holds points, which need -r or --voxel-size");
-    if (options.levels && options.voxel_size)
+    if (options.resolution && options.voxel_size)
       throw Error("", "", "holds points; of -r and --voxel-size one is enough");
-    if (options.origin && (options.bounds || !options.voxel_size))
-      throw Error("", "", "holds points; --origin goes with --voxel-size, and not with --bounds");
+    if (options.origin && (options.bounds || (!options.voxel_size && !options.resolution)))
+      throw Error("", "",
+                  "holds points; --origin goes with -r or --voxel-size, and not with --bounds");
   } else if (options.bounds) {
     throw Error("", "", "holds voxels; --bounds is for points");
+  } else if (options.snap || options.padding != 0 || options.center) {
+    throw Error("", "", "holds voxels; --snap, --padding and --center are for points");
   } else if (sets_place && source.has_place()) {
     throw Error("", "",
                 "says itself where its voxels lie: --voxel-size and --origin are for files that do "
@@ -60,14 +67,35 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
   options.colors = !arguments.is_grey;
   options.folder = std::filesystem::path(arguments.output).parent_path();
   if (options.folder.empty()) options.folder = ".";
+  std::vector<std::unique_ptr<VoxelSource>> sources;
+  for (const std::string& file : arguments.files)
+    with_file_name(file, [&] {
+      std::unique_ptr<VoxelSource> source =
+          open_voxel_source(file, {arguments.threshold, !options.voxel_size && !options.origin});
+      print_warnings(warnings_of(*source, file), session);
+      check_grid_options(*source, options);
+      sources.push_back(
+          moved_source(std::move(source), InputTransform(arguments.transform, custom_of(file))));
+    });
   return with_file_name(session.subject, [&] {
-    const std::unique_ptr<VoxelSource> source = open_voxel_source(
-        session.subject, {arguments.threshold, !options.voxel_size && !options.origin});
-    print_warnings(warnings_of(*source, session.subject), session);
-    check_grid_options(*source, options);
-    return import_model(*source, options,
-                        std::filesystem::path(session.subject).filename().string(), work);
+    return import_model(*joined_source(std::move(sources)), options, names_of(arguments.files),
+                        work, arguments.transform);
   });
+}
+
+/// Returns the files to import. A folder of slices is one input.
+std::vector<std::string> files_of(const std::vector<std::string>& arguments) {
+  std::vector<std::string> files;
+  for (const std::string& argument : arguments) {
+    const bool has_slices = expand_inputs({argument}, {".png"}).front() != argument &&
+                            std::filesystem::is_directory(argument);
+    const std::vector<std::string> of_argument =
+        has_slices ? std::vector{argument}
+                   : expand_inputs({argument}, {".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb",
+                                                ".ply", ".las", ".pcd", ".npy"});
+    files.insert(files.end(), of_argument.begin(), of_argument.end());
+  }
+  return files;
 }
 
 double parse_color_bound(const std::string& text) {
@@ -100,14 +128,14 @@ void import(const ImportArguments& arguments, Session& session) {
     std::error_code unknown;
     const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
     fmt::print(
-        "{}: {} read{}{}, {} voxels of {}³, {}, {}\n", arguments.output, with_commas(result.read),
+        "{}: {} read{}{}, {} voxels of {}³, {}, {}\n{}", arguments.output, with_commas(result.read),
         result.outside > 0 ? fmt::format(", {} of them outside", with_commas(result.outside)) : "",
         result.not_finite > 0
             ? fmt::format(", {} of them not finite", with_commas(result.not_finite))
             : "",
         with_commas(counts.voxels), with_commas(model.grid().resolution()),
         human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
-        human_seconds(watch.since_start()));
+        human_seconds(watch.since_start()), transform_table(arguments.transform, arguments.files));
   }
 }
 
@@ -125,19 +153,20 @@ void add_import_command(const Command& program, Session& session) {
                                       "order. Each point sets the voxel that it lies in. The DAG "
                                       "gets the colours of the file.");
   command
-      .text(
-          "file", session.subject, "FILE",
-          "Points: .ply, .las, .pcd, .npy of N x 3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. "
+      .repeated(
+          "file", arguments->files, [](const std::string& text) { return text; }, "FILE...",
+          "One file, several, a folder of them or a pattern. Points: .ply, .las, .pcd, .npy of N x "
+          "3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. "
           "Voxels: .vox, .binvox, or .npy of N x 3 integers. Volumes: .npy of X x Y x Z, .nrrd, "
           ".nhdr, .nii, "
           ".nii.gz, .vdb, or a folder of .png slices")
       .required();
   command.text("-o,--output", arguments->output, "OUT", "The .vdag file to write").required();
   ImportOptions& options = arguments->options;
-  const Option resolution = command.parsed(
-      "-r,--resolution", options.levels, parse_levels, "N",
-      "Voxels per side: a power of two from 4 to 1048576 (default for voxels: that of "
-      "FILE, or the least that holds them)");
+  const Option resolution =
+      command.parsed("-r,--resolution", options.resolution, parse_resolution, "N",
+                     "Voxels along the longest side, 1 to 1048576 (default for voxels: that of "
+                     "FILE, or the least that holds them)");
   command
       .parsed(
           "--voxel-size", options.voxel_size, parse_positive, "SIZE",
@@ -150,6 +179,8 @@ void add_import_command(const Command& program, Session& session) {
   command.parsed("--bounds", options.bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
                  "For points: box that the grid holds; points outside are left out (default: the "
                  "bounding box of the points)");
+  add_margin_options(command, options);
+  add_transform_options(command, arguments->transform);
   command.parsed("--threshold", arguments->threshold, parse_finite, "VALUE",
                  "For volumes of numbers: values from VALUE on set their voxel (default: all but "
                  "0)");
@@ -168,6 +199,9 @@ void add_import_command(const Command& program, Session& session) {
   add_quiet_option(command, session);
   add_json_option(command, session);
   command.when_parsed([arguments, &session] {
+    arguments->files = files_of(arguments->files);
+    session.subject = arguments->files.front();
+    session.inputs = arguments->files;
     check_distinct({{"--output", arguments->output}}, session);
     session.work = [arguments, &session] { import(*arguments, session); };
   });

@@ -147,7 +147,8 @@ Option Command::add_list(const std::string& names, const std::function<void()>& 
     }
   };
   *option = app_->add_option_function<std::vector<std::string>>(names, store_all, help);
-  (*option)->type_name(shape)->allow_extra_args(false);
+  // Positional arguments take all that follow.
+  (*option)->type_name(shape)->allow_extra_args(!names.starts_with('-'));
   if (separator != '\0') (*option)->delimiter(separator);
   return {*option, rules_};
 }

@@ -4,7 +4,9 @@
 #include <stdexcept>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/mesh/join_meshes.hpp"
 #include "voxdag/mesh_view/mesh_in_grid.hpp"
 
 namespace voxdag::cli {
@@ -17,17 +19,27 @@ bool parse_importers(const std::string& text) {
   return text == "any";
 }
 
-/// Calls read(options) and checks that the mesh names no output.
-template <class Read>
-auto read_and_check(const std::string& file, const MeshAccess& access, Session& session,
-                    const Read& read) {
+/// Reads a mesh, moves it, and checks that it names no output.
+MeshWithAppearance read_and_check(const std::string& file, bool with_appearance,
+                                  const MeshAccess& access, Session& session) {
   std::vector<std::filesystem::path> named;
   ReadOptions options;
   options.work = {access.memory, &session.progress};
   access.give_rights(options);
   options.named_files = &named;
-  auto result = read(options);
+  MeshWithAppearance result;
+  if (with_appearance)
+    result = read_mesh_with_appearance(file, options);
+  else {
+    options.warnings = &result.warnings;
+    result.mesh = read_mesh(file, options);
+  }
   check_not_overwritten(access.outputs, named, file);
+  print_warnings(result.warnings, session);
+  result.warnings.clear();
+  with_file_name(file, [&] {
+    move_mesh(result, InputTransform(access.transform, custom_of(file)), options.work);
+  });
   return result;
 }
 
@@ -46,22 +58,28 @@ void add_mesh_access_options(const Command& command, MeshAccess& access, const O
 }
 
 Mesh read_mesh_file(const std::string& file, const MeshAccess& access, Session& session) {
-  std::vector<std::string> warnings;
-  Mesh mesh = read_and_check(file, access, session, [&](ReadOptions options) {
-    options.warnings = &warnings;
-    return read_mesh(file, options);
-  });
-  print_warnings(warnings, session);
-  return mesh;
+  return read_and_check(file, false, access, session).mesh;
 }
 
 MeshWithAppearance read_mesh_file_with_appearance(const std::string& file, const MeshAccess& access,
                                                   Session& session) {
-  MeshWithAppearance read = read_and_check(file, access, session, [&](const ReadOptions& options) {
-    return read_mesh_with_appearance(file, options);
-  });
-  print_warnings(read.warnings, session);
-  return read;
+  return read_and_check(file, true, access, session);
+}
+
+JoinedMeshes read_mesh_files(const std::vector<std::string>& files, bool with_appearance,
+                             const MeshAccess& access, Session& session) {
+  JoinedMeshes joined;
+  for (std::uint32_t i = 0; i < files.size(); ++i) {
+    MeshWithAppearance read = read_and_check(files[i], with_appearance, access, session);
+    if (files.size() > 1)
+      name_parts(read, std::filesystem::path(files[i]).filename().string(), access.memory);
+    joined.files.push_back({joined.source.mesh.triangles.size(), i});
+    if (i == 0)
+      joined.source = std::move(read);
+    else
+      with_file_name(files[i], [&] { append_mesh(joined.source, std::move(read), access.memory); });
+  }
+  return joined;
 }
 
 void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet& scene,

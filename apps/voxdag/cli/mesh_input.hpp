@@ -8,6 +8,7 @@
 #include "voxdag/core/grid.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/formats/readers/read_options.hpp"
+#include "voxdag/mesh/input_transform.hpp"
 #include "voxdag/stored/svdag/voxel_set.hpp"
 
 namespace voxdag::cli {
@@ -16,6 +17,8 @@ namespace voxdag::cli {
 struct MeshAccess {
   bool allow_outside = false;       ///< As ReadOptions::allow_outside.
   bool any_importer = false;        ///< As ReadOptions::any_assimp_importer.
+  bool objects = false;             ///< As ReadOptions::objects.
+  TransformRequest transform;       ///< Moves each mesh, by the customs of its format.
   MemoryBudget* memory = nullptr;   ///< The budget of ReadOptions::work.
   std::vector<OutputFile> outputs;  ///< Files that the command writes: no mesh may name them.
 
@@ -23,6 +26,7 @@ struct MeshAccess {
   void give_rights(ReadOptions& options) const {
     options.allow_outside = allow_outside;
     options.any_assimp_importer = any_importer;
+    options.objects = objects;
   }
 };
 
@@ -30,12 +34,23 @@ struct MeshAccess {
 void add_mesh_access_options(const Command& command, MeshAccess& access,
                              const Option* mesh = nullptr);
 
-/// Reads a mesh and prints the warnings. Throws Error, also if the mesh names one of the outputs.
+/// Reads a mesh, moves it, and prints the warnings. Throws Error, also if the mesh names one of the
+/// outputs.
 Mesh read_mesh_file(const std::string& file, const MeshAccess& access, Session& session);
 
 /// Reads a mesh and its appearance, and prints the warnings. Throws Error like read_mesh_file().
 MeshWithAppearance read_mesh_file_with_appearance(const std::string& file, const MeshAccess& access,
                                                   Session& session);
+
+/// The meshes of several files in one.
+struct JoinedMeshes {
+  MeshWithAppearance source;
+  std::vector<ObjectRun> files;  ///< The runs of triangles of each file.
+};
+/// Reads meshes, with their appearance if `with_appearance`, and joins them. Their materials and
+/// objects are named after the file where it has several.
+JoinedMeshes read_mesh_files(const std::vector<std::string>& files, bool with_appearance,
+                             const MeshAccess& access, Session& session);
 
 /// Throws Error(file, ...) unless the voxels were built from this mesh, which was read from `file`.
 void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet& scene,

@@ -137,8 +137,9 @@ void add_combine_command(const Command& program, Session& session) {
       "combine", "Write the union, intersection or difference of two DAGs",
       "voxdag combine body.vdag hole.vdag --subtract -o drilled.vdag\n\n"
       "The grids may have other sizes and places if their voxels coincide, within "
-      "1/1000 of a voxel: `voxdag build --voxel-size` and `voxdag build --bounds` make "
-      "such grids. Other grids are refused. The result of --union and --xor gets the "
+      "1/1000 of a voxel: `voxdag build` and `voxdag import` make such grids with one "
+      "--voxel-size and --snap or --bounds. Other grids are refused. The result of --union and "
+      "--xor gets the "
       "smallest grid that starts at the lower corner of both and holds both; the result "
       "of --intersect and --subtract keeps the grid of A.");
   command.text("first", session.subject, "A", "A .vdag file").required();

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "build/attribute_options.hpp"
 #include "build/displace_option.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
@@ -37,7 +38,8 @@ using Result = VerifyCheck::Result;
 constexpr std::int64_t kMaxSamples = 1'000'000'000;
 
 struct VerifyArguments {
-  std::string mesh;
+  std::string mesh;  ///< The first of `meshes`, for messages.
+  std::vector<std::string> meshes;
   MeshAccess access;
   std::uint64_t samples = 20'000;
   std::uint64_t seed = 1;
@@ -108,15 +110,22 @@ VerifyCheck value_check(const char* name, const ValueCheck& values, double bound
 
 /// Compares the attributes with the mesh. Returns no checks if the file has no attributes.
 std::vector<VerifyCheck> attribute_checks(const VerifyArguments& arguments, const DagModel& file,
-                                          const MeshWithAppearance& source, Session& session) {
+                                          const JoinedMeshes& meshes, Session& session) {
   const DagAttributesView attributes = file.attributes();
   if (attributes.is_empty()) return {};
-  if (attributes.has_materials() && source.mesh.triangle_materials.empty())
-    return {{"material ids", Result::kFailed, arguments.mesh + " has no materials"}};
+  const MeshWithAppearance& source = meshes.source;
+  NamedIds ids;
+  if (attributes.has_materials()) {
+    if (const auto kind = file.metadata().build.find("ids"); kind != file.metadata().build.end())
+      ids = named_ids(kind->second == "file" ? IdKind::kFile : IdKind::kObject, meshes,
+                      arguments.meshes, nullptr);
+    else if (source.mesh.triangle_materials.empty())
+      return {{"material ids", Result::kFailed, arguments.mesh + " has no materials"}};
+  }
   const SurfaceShading shading(source.mesh, source.appearance, nullptr, &session.progress);
   const AttributeCheck found =
       check_attributes(source.mesh, file.grid(), {file.view(), attributes}, shading,
-                       arguments.samples, arguments.seed, &session.progress);
+                       arguments.samples, arguments.seed, &session.progress, ids.view());
   const AttributesMetadata& stored = file.metadata().attributes;
   std::vector<VerifyCheck> checks;
   if (attributes.has_colors())
@@ -131,12 +140,23 @@ std::vector<VerifyCheck> attribute_checks(const VerifyArguments& arguments, cons
   return checks;
 }
 
-/// Returns a mesh that was read without its appearance with a default appearance.
-MeshWithAppearance without_appearance(Mesh mesh) {
-  MeshWithAppearance source;
-  source.appearance.materials.resize(std::max<std::size_t>(mesh.materials.size(), 1));
-  source.mesh = std::move(mesh);
-  return source;
+/// Reads the meshes and moves them as the build of the file did. Without `with_appearance`, their
+/// appearance is a default one.
+JoinedMeshes read_meshes_of(const VerifyArguments& arguments, const SceneMetadata& metadata,
+                            bool with_appearance, Session& session) {
+  MeshAccess access = arguments.access;
+  access.objects = metadata.build.contains("ids");
+  try {
+    access.transform = transform_request(metadata.build);
+    InputTransform(access.transform, {});
+  } catch (const std::invalid_argument& wrong) {
+    throw Error(session.subject, "build", wrong.what());
+  }
+  JoinedMeshes meshes = read_mesh_files(arguments.meshes, with_appearance, access, session);
+  if (!with_appearance)
+    meshes.source.appearance.materials.resize(
+        std::max<std::size_t>(meshes.source.mesh.materials.size(), 1));
+  return meshes;
 }
 
 /// Compares a solid DAG with the mesh: its surface, and then what is inside.
@@ -192,12 +212,11 @@ std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, const Vdag
   if (!arguments.displace.texture.empty())
     throw Error(session.subject, "", "--displace is for ESVOs only, but this file is a DAG");
   const DagModel file(opened, &session.progress);
-  MeshWithAppearance source;
   const bool is_cut = file.metadata().build.contains("alpha");
-  if (is_cut || file.attributes().has_colors() || file.attributes().has_normals())
-    source = read_mesh_file_with_appearance(arguments.mesh, arguments.access, session);
-  else
-    source = without_appearance(read_mesh_file(arguments.mesh, arguments.access, session));
+  const JoinedMeshes meshes = read_meshes_of(
+      arguments, file.metadata(),
+      is_cut || file.attributes().has_colors() || file.attributes().has_normals(), session);
+  const MeshWithAppearance& source = meshes.source;
   if (file.metadata().build.contains("solid"))
     return solid_checks(arguments, file, source.mesh, session);
   std::vector<VerifyCheck> checks =
@@ -205,7 +224,7 @@ std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, const Vdag
              : std::vector{cover_check(arguments, file.view(), file.grid(), source.mesh, session)};
   // If the voxels differ from the mesh, the attributes do too.
   if (checks.back().result != Result::kPassed) return checks;
-  for (VerifyCheck& check : attribute_checks(arguments, file, source, session))
+  for (VerifyCheck& check : attribute_checks(arguments, file, meshes, session))
     checks.push_back(std::move(check));
   return checks;
 }
@@ -253,7 +272,7 @@ VerifyCheck enclosure_check(const VerifyArguments& arguments, const VdagContaine
             fmt::format("the surface is displaced: give the --displace of the build, which was {}",
                         file.metadata().build.at("displace"))};
   const MeshWithAppearance source =
-      read_mesh_file_with_appearance(arguments.mesh, arguments.access, session);
+      read_meshes_of(arguments, file.metadata(), true, session).source;
   const SurfaceShading shading(source.mesh, source.appearance, nullptr, &session.progress);
   std::vector<std::string> warnings;
   const std::optional<DisplacedTriangles> displaced =
@@ -327,9 +346,10 @@ void add_verify_command(const Command& program, Session& session) {
       "If "
       "a texture file displaced the surface, give the --displace of the build.");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
-  const Option mesh =
-      command.text("--mesh", arguments->mesh, "MESH",
-                   "Compare voxels and attributes with this mesh, in random cells or points");
+  const Option mesh = command.repeated(
+      "--mesh", arguments->meshes, [](const std::string& text) { return text; }, "MESH",
+      "Compare voxels and attributes with this mesh, in random cells or points. "
+      "Give all meshes of the build, in its order");
   command
       .number("--samples", arguments->samples, NumberRange::whole(0, kMaxSamples), "N",
               "With --mesh: number of random cells or points")
@@ -346,6 +366,7 @@ void add_verify_command(const Command& program, Session& session) {
   add_quiet_option(command, session);
   add_json_option(command, session);
   command.when_parsed([arguments, &session] {
+    if (!arguments->meshes.empty()) arguments->mesh = arguments->meshes.front();
     session.work = [arguments, &session] { verify(*arguments, session); };
   });
 }

@@ -63,6 +63,7 @@ bool lacks_segments(const MeshJob& job, std::uint64_t segments) {
 MeshFacts mesh_facts(const MeshJob& job) {
   if (has_facts(job)) return stored_facts(job);
   SharedMesh mesh(job.ranks, job.folder, job.mesh, job.reading, job.chunk_bytes);
+  mesh.move(job.transform);
   MeshFacts facts;
   Box3d bounds = Box3d::empty();
   std::tie(bounds, facts.bad_triangles) = mesh.used_vertices();
@@ -87,7 +88,8 @@ MeshFacts mesh_facts(const MeshJob& job) {
 
 std::vector<TriangleSegment> mesh_segments(const MeshJob& job, const MeshFacts& facts) {
   if (lacks_segments(job, facts.segments)) {
-    const SharedMesh mesh(job.ranks, job.folder, job.mesh, job.reading, job.chunk_bytes);
+    SharedMesh mesh(job.ranks, job.folder, job.mesh, job.reading, job.chunk_bytes);
+    mesh.move(job.transform);
     write_segments(job, mesh, facts);
   }
   if (job.ranks.rank() == 0) job.folder.remove(kMeshFolder);

@@ -9,6 +9,7 @@
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/grid.hpp"
 #include "voxdag/formats/readers/read_options.hpp"
+#include "voxdag/mesh/input_transform.hpp"
 
 namespace voxdag {
 
@@ -20,6 +21,7 @@ struct MeshJob {
   const GridRequest& grid;
   ReadOptions reading;      ///< Has the budget and the progress.
   std::size_t chunk_bytes;  ///< Of the mesh file; see SharedMesh.
+  InputTransform transform = {};
 };
 
 /// The grid of a mesh, its size, and the segments that it is stored in.

@@ -42,6 +42,13 @@ std::string checksum_of(const std::filesystem::path& path, Work work) {
   return fmt::format("{:016x}", checksum.digest());
 }
 
+/// Returns the settings that shape the voxels, for the metadata of the output.
+JobSettings build_settings(const PartsJob& job) {
+  JobSettings settings = voxdag::settings_of(job.grid);
+  add_settings(job.transform, settings);
+  return settings;
+}
+
 /// Returns what the job is about. Collective.
 JobSettings settings_of(const PartsJob& job, const std::string& program, Ranks& ranks, Work work) {
   std::string checksum;
@@ -54,8 +61,12 @@ JobSettings settings_of(const PartsJob& job, const std::string& program, Ranks& 
                           {"mesh", job.mesh.filename().string()},
                           {"content of the mesh (checksum)", checksum},
                           {"number of parts", job.parts == 0 ? "any" : std::to_string(job.parts)}};
-  if (job.grid.levels) settings["resolution"] = std::to_string(std::int64_t{1} << *job.grid.levels);
+  for (const auto& [name, value] : build_settings(job)) settings[name] = value;
+  if (job.grid.resolution) settings["resolution"] = std::to_string(*job.grid.resolution);
   if (job.grid.voxel_size) settings["voxel size"] = fmt::format("{}", *job.grid.voxel_size);
+  if (job.grid.origin)
+    settings["origin"] =
+        fmt::format("{},{},{}", job.grid.origin->x, job.grid.origin->y, job.grid.origin->z);
   if (job.grid.bounds) {
     const Box3d& box = *job.grid.bounds;
     settings["bounds"] = fmt::format("{},{},{},{},{},{}", box.lo.x, box.lo.y, box.lo.z, box.hi.x,
@@ -82,7 +93,13 @@ class PartsRun {
         ranks_(ranks),
         folder_(folder),
         work_(work),
-        mesh_job_{ranks, folder, job.mesh, job.grid, job.reading, job.chunk_bytes},
+        mesh_job_{ranks,
+                  folder,
+                  job.mesh,
+                  job.grid,
+                  job.reading,
+                  job.chunk_bytes,
+                  InputTransform(job.transform, custom_of(job.mesh.string()))},
         log_(folder, ranks.rank()) {
     mesh_job_.reading.work = work;
   }
@@ -110,7 +127,7 @@ class PartsRun {
                        facts.triangles - facts.bad_triangles};
     report_.bad_triangles = facts.bad_triangles;
     metadata.program = program;
-    metadata.build = voxdag::settings_of(job_.grid);
+    metadata.build = build_settings(job_);
     metadata.counts = dag.counts;
     report_.node_bytes = dag.level_begin.back() * 4;
     report_.leaf_bytes = dag.leaf_blocks * 8;

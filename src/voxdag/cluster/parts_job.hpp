@@ -23,12 +23,14 @@
 #include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
 #include "voxdag/formats/readers/read_options.hpp"
+#include "voxdag/mesh/input_transform.hpp"
 
 namespace voxdag {
 
 struct PartsJob {
   std::filesystem::path mesh, work_folder, output;
   GridRequest grid;
+  TransformRequest transform;
   /// Least number of parts, if the mesh meets enough cells; 0: a number that fits the ranks and
   /// their memory.
   std::uint64_t parts = 0;

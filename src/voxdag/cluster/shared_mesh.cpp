@@ -206,7 +206,7 @@ std::pair<Box3d, std::uint64_t> SharedMesh::used_vertices() {
                         last = std::min(first + kReleaseTriangles, all);
     for (std::uint64_t t = first; t < last; ++t) {
       const auto [a, b, c] = triangles[t];
-      of_step.add(vertices[a], vertices[b], vertices[c]);
+      of_step.add(stored(vertices[a]), stored(vertices[b]), stored(vertices[c]));
     }
     release();
     const std::lock_guard guard(mutex);
@@ -227,8 +227,14 @@ std::pair<Box3d, std::uint64_t> SharedMesh::used_vertices() {
     if (ranks_.rank() == 0) throw Error(path_.string(), "", kNoGoodTriangle);
     ranks_.barrier();
   }
-  return {{from_origin(origin_, used.bounds.lo), from_origin(origin_, used.bounds.hi)},
+  const Vec3d origin = is_moved() ? moved_origin_ : origin_;
+  return {{from_origin(origin, used.bounds.lo), from_origin(origin, used.bounds.hi)},
           used.bad_triangles};
+}
+
+void SharedMesh::move(const InputTransform& transform) {
+  transform_ = transform;
+  if (is_moved()) moved_origin_ = float_origin(used_vertices().first);
 }
 
 std::uint64_t SharedMesh::count_vertices() {

@@ -27,6 +27,7 @@
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/formats/readers/mesh_chunks.hpp"
+#include "voxdag/mesh/input_transform.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
@@ -88,12 +89,17 @@ class SharedMesh {
   SharedMesh(Ranks& ranks, const WorkFolder& folder, const std::filesystem::path& path,
              const ReadOptions& reading, std::size_t chunk_bytes);
 
+  /// Moves what position() and used_vertices() return as move_mesh() does. Collective.
+  void move(const InputTransform& transform);
+  /// Returns where a vertex that vertices() has lies, in world units.
+  Vec3d position(Vec3f vertex) const {
+    return from_origin(is_moved() ? moved_origin_ : origin_, stored(vertex));
+  }
+
   const ArrayFiles<Vec3f>& vertices() const { return *vertices_; }
   const ArrayFiles<Triangle>& triangles() const { return *triangles_; }
   /// Returns the number of vertices that read_mesh() gives: vertices() can repeat some. Collective.
   std::uint64_t count_vertices();
-  /// Returns Mesh::origin, from which vertices() are measured, in world units.
-  Vec3d origin() const { return origin_; }
   /// Returns the box of the vertices that triangles use, in world units, and the number of
   /// triangles that have a vertex that is not finite; both without these. Collective.
   std::pair<Box3d, std::uint64_t> used_vertices();
@@ -109,6 +115,11 @@ class SharedMesh {
   void read_chunks(const std::string& folder);
   void read_alone();
   void open(const std::string& folder);
+  bool is_moved() const { return !transform_.is_identity(); }
+  /// Returns a vertex as the moved Mesh has it.
+  Vec3f stored(Vec3f vertex) const {
+    return is_moved() ? transform_.vertex(from_origin(origin_, vertex), moved_origin_) : vertex;
+  }
   /// Calls read(chunk, values) for the chunks of a task and writes the values. `count` is the
   /// number of them in ChunkCounts.
   template <class T, class Read>
@@ -128,6 +139,8 @@ class SharedMesh {
   std::optional<ArrayFiles<Vec3f>> vertices_;
   std::optional<ArrayFiles<Triangle>> triangles_;
   Vec3d origin_{};
+  InputTransform transform_;
+  Vec3d moved_origin_{};  ///< As origin_, after transform_.
 };
 
 }  // namespace voxdag

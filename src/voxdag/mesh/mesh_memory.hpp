@@ -15,10 +15,13 @@ std::uint64_t memory_bytes(const StoredVector<T>& vector) {
 
 /// Returns the bytes that the arrays of a mesh hold on the heap. Arrays in a store do not count.
 inline std::uint64_t memory_bytes(const Mesh& mesh) {
-  std::uint64_t bytes = memory_bytes(mesh.vertices) + memory_bytes(mesh.triangles) +
-                        memory_bytes(mesh.triangle_materials) +
-                        mesh.materials.capacity() * sizeof(std::string);
+  std::uint64_t bytes =
+      memory_bytes(mesh.vertices) + memory_bytes(mesh.triangles) +
+      memory_bytes(mesh.triangle_materials) +
+      (mesh.materials.capacity() + mesh.objects.capacity()) * sizeof(std::string) +
+      mesh.object_runs.capacity() * sizeof(ObjectRun);
   for (const std::string& name : mesh.materials) bytes += name.capacity();
+  for (const std::string& name : mesh.objects) bytes += name.capacity();
   return bytes;
 }
 

@@ -2,10 +2,15 @@
 /// Closed meshes, and the winding number of their surface in double precision.
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/builders/voxelize/overlap.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
@@ -71,5 +76,57 @@ inline double winding_number(const Mesh& mesh, Vec3d point) {
   }
   return sum / (4 * std::numbers::pi);
 }
+
+/// The voxels that a body only touches with faces between voxels, one voxel at a time.
+class TouchedVoxels {
+ public:
+  /// is_inside(voxel) tells on which side the centre of a voxel lies.
+  TouchedVoxels(const Mesh& mesh, const Grid& grid, std::function<bool(Vec3i)> is_inside)
+      : mesh_(mesh, grid), levels_(grid.levels), is_inside_(std::move(is_inside)) {}
+
+  bool contains(Vec3i v) const {
+    if (!has_face(v) || is_body(v)) return false;
+    for (int neighbour = 1; neighbour < 8; ++neighbour)
+      if (is_body(v - child_offset(neighbour))) return true;
+    return false;
+  }
+
+ private:
+  /// Returns whether a triangle meets the voxel, as a cube without its upper sides or without its
+  /// lower ones.
+  bool is_met(Vec3i v, bool has_upper_sides) const {
+    for (std::size_t i = 0; i < mesh_.triangle_count(); ++i) {
+      const QuantizedTriangle t = mesh_.triangle(i);
+      const Vec3l low = static_cast<Vec3l>(v) * std::int64_t{256};
+      if (has_upper_sides
+              ? triangle_overlaps_cube(-t.x, -t.y, -t.z, -low - Vec3l{256, 256, 256}, 256)
+              : triangle_overlaps_cube(t.x, t.y, t.z, low, 256))
+        return true;
+    }
+    return false;
+  }
+  bool has_face(Vec3i v) const {
+    for (std::size_t i = 0; i < mesh_.triangle_count(); ++i) {
+      const QuantizedTriangle t = mesh_.triangle(i);
+      const auto is_in_plane = [&](int axis) {
+        return t.x[axis] % 256 == 0 && t.x[axis] == t.y[axis] && t.x[axis] == t.z[axis];
+      };
+      if ((is_in_plane(0) || is_in_plane(1) || is_in_plane(2)) &&
+          triangle_overlaps_cube(t.x, t.y, t.z, static_cast<Vec3l>(v) * std::int64_t{256}, 256))
+        return true;
+    }
+    return false;
+  }
+  bool is_body(Vec3i v) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (v[axis] < 0 || v[axis] >> levels_ != 0) return false;
+    const bool is_below = is_met(v, false), is_above = is_met(v, true);
+    return (is_below && is_above) || is_inside_(v);
+  }
+
+  QuantizedMesh mesh_;
+  int levels_;
+  std::function<bool(Vec3i)> is_inside_;
+};
 
 }  // namespace voxdag

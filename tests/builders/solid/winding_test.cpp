@@ -46,17 +46,21 @@ struct Filled {
   int inside = 0, in_holes = 0, undecided = 0;
 };
 
-/// Expects that fill_solid() adds the voxels whose winding number reaches the threshold, and no
-/// others. Counts those inside, and those whose winding number is not near a whole number.
+/// Expects that fill_solid() adds the voxels whose winding number reaches the threshold, leaves out
+/// those that the body only touches, and changes no others. Counts those inside, and those whose
+/// winding number is not near a whole number.
 Filled expect_winding(const Mesh& mesh, const Grid& grid, double threshold = 0.5) {
   const Svdag cover = build_svdag(mesh, grid).dag;
   const Svdag solid = fill_solid(cover.view(), mesh, grid, {SolidRule::kWinding, threshold});
   const Mesh units = quantized_mesh(mesh, grid);
   Filled filled;
+  const auto winding_of = [&](Vec3i v) {
+    return std::abs(winding_number(units, (static_cast<Vec3d>(v) + Vec3d{0.5, 0.5, 0.5}) * 256.0));
+  };
+  const TouchedVoxels touched(mesh, grid, [&](Vec3i v) { return winding_of(v) >= threshold; });
   const std::vector<Vec3i> expected = voxels_where(grid.levels, [&](Vec3i v) {
-    if (svdag_contains(cover.view(), v, grid.levels)) return true;
-    const double winding =
-        std::abs(winding_number(units, (static_cast<Vec3d>(v) + Vec3d{0.5, 0.5, 0.5}) * 256.0));
+    if (svdag_contains(cover.view(), v, grid.levels)) return !touched.contains(v);
+    const double winding = winding_of(v);
     // The voxel's point is up to half a unit beside its centre.
     if (std::abs(winding - threshold) < 1e-3) {
       ++filled.undecided;

@@ -60,7 +60,7 @@ ImportResult import_listed(const std::vector<ColoredVoxel>& voxels, int levels,
                            MemoryBudget* memory = nullptr) {
   const TempDir dir;
   ImportOptions options;
-  options.levels = levels;
+  options.resolution = std::int64_t{1} << levels;
   options.color_bound = 0;
   options.folder = dir.path();
   return import_voxels(ListedVoxels(voxels), options, memory);

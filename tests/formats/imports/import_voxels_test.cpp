@@ -38,7 +38,7 @@ class Import : public testing::Test {
 
 ImportOptions with_levels(int levels) {
   ImportOptions options;
-  options.levels = levels;
+  options.resolution = std::int64_t{1} << levels;
   return options;
 }
 

@@ -254,7 +254,7 @@ TEST_F(PcdPointsTest, PointsThatAreNotFiniteAreLeftOut) {
     pcd.size = "WIDTH 20\nHEIGHT 5\nPOINTS 100\n";
     write_text(path_, pcd_of(pcd, cloud));
     ImportOptions options;
-    options.levels = 6;
+    options.resolution = 64;
     options.folder = dir_.path();
     const ImportResult result = import_voxels(*open_voxel_source(path_), options);
     EXPECT_EQ(result.read, 100u);

@@ -84,7 +84,7 @@ class PointFile : public testing::Test {
   void expect_voxels(const std::string& bytes, const std::vector<Vec3d>& places) const {
     write_text(path_, bytes);
     ImportOptions options;
-    options.levels = 6;
+    options.resolution = 64;
     options.folder = dir_.path();
     const ImportResult result = import_voxels(*open_voxel_source(path_), options);
     std::vector<Vec3i> voxels;

@@ -138,6 +138,19 @@ TEST(GltfReader, NodesTransformAndInstance) {
   EXPECT_EQ(mesh.triangles[3], (Triangle{4, 6, 7}));
 }
 
+TEST(GltfReader, NodesAreTheObjectsOnRequest) {
+  Asset asset = square();
+  asset.json["scenes"][0]["nodes"] = {0, 1, 2};
+  asset.json["nodes"] = {{{"mesh", 0}, {"name", "chair"}}, {{"name", "empty"}}, {{"mesh", 0}}};
+  const std::string text = asset.text();
+  MeshSource source{text, "mesh", {}, nullptr, {}};
+  EXPECT_TRUE(read_gltf(source, ReadParts::kMesh).mesh.objects.empty());
+  source.options.objects = true;
+  const Mesh mesh = read_gltf(source, ReadParts::kMesh).mesh;
+  EXPECT_EQ(mesh.objects, (std::vector<std::string>{"chair", "node 2"}));
+  EXPECT_EQ(mesh.object_runs, (std::vector<ObjectRun>{{0, 0}, {2, 1}}));
+}
+
 TEST(GltfReader, WithoutScenesAllRootNodesShow) {
   Asset asset = square();
   asset.json.erase("scene");

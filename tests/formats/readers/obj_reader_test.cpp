@@ -62,6 +62,18 @@ TEST(ObjReader, MaterialNamesAreKeptInOrderOfUse) {
   EXPECT_EQ(mesh.triangle_materials, (StoredVector<std::uint32_t>{0, 1, 0}));
 }
 
+TEST(ObjReader, ObjectsAndGroupsAreKeptOnRequest) {
+  const std::string text = std::string(kSquare) +
+                           "f 1 2 3\no box one \nv 0 0 0\ng lid\nf 1 2 3 4\ng empty\no box two\n"
+                           "f 1 2 4\ng lid\nf 2 3 4\n";
+  MeshSource source{text, "mesh", {}, nullptr, {}};
+  EXPECT_TRUE(read_obj(source, ReadParts::kMesh).mesh.objects.empty());
+  source.options.objects = true;
+  const Mesh mesh = read_obj(source, ReadParts::kMesh).mesh;
+  EXPECT_EQ(mesh.objects, (std::vector<std::string>{"default", "lid", "box two"}));
+  EXPECT_EQ(mesh.object_runs, (std::vector<ObjectRun>{{0, 0}, {1, 1}, {3, 2}, {4, 1}}));
+}
+
 TEST(ObjReader, FacesBeforeAnyMaterialHaveTheUnnamedOne) {
   const Mesh mesh = square_with("f 1 2 3\nusemtl blue\nf 1 3 4\n");
   EXPECT_EQ(mesh.materials, (std::vector<std::string>{"", "blue"}));

@@ -64,7 +64,7 @@ DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagVi
   result.index = build_cell_index(dag, options.finest_level, work.memory);
   const MemoryReservation index_bytes(work.memory, result.index.view().bytes());
   if (options.materials)
-    result.materials = filter_materials(mesh, grid, dag, result.index.view(), work);
+    result.materials = filter_materials(mesh, grid, dag, result.index.view(), work, options.ids);
   const MemoryReservation material_bytes(work.memory, result.materials.view().bytes());
   if (!options.colors && !options.normals) return result;
   AttributeEncoder encoder(result.index.cells, options, work.memory);

@@ -2,6 +2,7 @@
 /// Builds the attributes of a DAG: numbers of its cells, filtered and compressed colours and
 /// normals, and materials.
 #include "voxdag/builders/attributes/filter_cells.hpp"
+#include "voxdag/builders/attributes/filter_materials.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/attributes/dag_attributes.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
@@ -10,6 +11,7 @@ namespace voxdag {
 
 struct AttributeOptions {
   bool colors = false, normals = false, materials = false;  ///< At least one.
+  TriangleIds ids;       ///< Stored instead of materials, if there are some.
   int finest_level = 0;  ///< m: cells of levels 0 to m get attributes.
   /// The largest error of a stored colour, 0 to 1: the square root of the mean of the channels'
   /// squared differences, sRGB encoded, with the weights kColorWeights. 0: lossless.
@@ -19,10 +21,10 @@ struct AttributeOptions {
 };
 
 /// Builds the attributes of `dag`, the DAG of `mesh` in `grid`. `shading` is the shading of the
-/// mesh; null: grey. For materials, the mesh must have a material for each triangle, and at most
-/// kMaxMaterials materials. The result depends on mesh, shading, grid and options alone, not on
-/// the number of threads. The budget no longer counts the result when the function returns. Throws
-/// OverMemory and Cancelled.
+/// mesh; null: grey. For materials without ids, the mesh must have a material for each triangle,
+/// and at most kMaxMaterials materials. The result depends on mesh, shading, grid and options
+/// alone, not on the number of threads. The budget no longer counts the result when the function
+/// returns. Throws OverMemory and Cancelled.
 DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
                                const SurfaceShading* shading, const AttributeOptions& options,
                                Work work = {});

@@ -208,8 +208,10 @@ std::vector<std::uint64_t> next_samples(std::uint64_t cells, std::uint64_t left,
 
 AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const ColoredDagView& colored,
                                 const SurfaceShading& shading, std::uint64_t samples,
-                                std::uint64_t seed, Work work) {
+                                std::uint64_t seed, Work work, const TriangleIds& ids) {
   AttributeCheck check;
+  const std::span<const std::uint32_t> materials =
+      ids.count > 0 ? ids.ids : std::span<const std::uint32_t>(mesh.triangle_materials);
   if (colored.is_empty()) return check;
   const QuantizedMesh quantized(mesh, grid, work);
   const IndexSet duplicates = find_duplicate_surfaces(mesh, &shading.appearance(), work),
@@ -219,7 +221,7 @@ AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const Colore
   const TriangleSource all{grid, quantized, no_open_edges, nullptr, no_duplicates};
   const TriangleSource source{grid, quantized, no_open_edges, nullptr, duplicates};
   tbb::enumerable_thread_specific<CellComparer> comparers(
-      [&] { return CellComparer(colored, source, all, mesh.triangle_materials, shading); });
+      [&] { return CellComparer(colored, source, all, materials, shading); });
   SampleWalk walk(colored, all, comparers, work);
   const std::uint64_t cells = colored.attributes.index.cells;
   const bool is_all = samples >= cells;

@@ -1,5 +1,6 @@
 #pragma once
 /// Compares stored attributes of a DAG's cells with the surface of the mesh.
+#include "voxdag/builders/attributes/filter_materials.hpp"
 #include "voxdag/core/grid.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/mesh.hpp"
@@ -33,11 +34,11 @@ struct AttributeCheck {
 ///
 /// Rounding changes the channels of a colour by one step of 8 bits, which is an error of 1/255, and
 /// turns a normal by less than 0.1 degrees. Materials with equal areas differ by less than 0.001.
-/// `mesh` must have materials if the DAG has. The result does not depend on the number of threads.
-/// Throws Cancelled.
+/// `mesh` must have materials if the DAG has, or `ids` those that the DAG stores. The result does
+/// not depend on the number of threads. Throws Cancelled.
 AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const ColoredDagView& colored,
                                 const SurfaceShading& shading, std::uint64_t samples,
-                                std::uint64_t seed, Work work = {});
+                                std::uint64_t seed, Work work = {}, const TriangleIds& ids = {});
 
 /// Tolerances for the errors of check_attributes(), to add to the bounds of the encoder.
 inline constexpr double kColorTolerance = 1.5 / 255, kNormalTolerance = 0.1,

@@ -40,8 +40,12 @@ void join_top_cells(const NumberedTopCells& cells, std::vector<TopMaterials>& of
 }  // namespace
 
 MaterialIds filter_materials(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
-                             const CellIndexView& index, Work work) {
+                             const CellIndexView& index, Work work, const TriangleIds& ids) {
   if (dag.is_empty()) return {};
+  const std::span<const std::uint32_t> of_triangles =
+      ids.count > 0 ? ids.ids : std::span<const std::uint32_t>(mesh.triangle_materials);
+  const std::uint32_t count =
+      ids.count > 0 ? ids.count : static_cast<std::uint32_t>(mesh.materials.size());
   const QuantizedMesh quantized(mesh, grid, work);
   const MemoryReservation tables(work.memory, quantized.triangle_count());
   const IndexSet no_duplicates;
@@ -51,7 +55,7 @@ MaterialIds filter_materials(const Mesh& mesh, const Grid& grid, const SvdagView
   std::vector<TopMaterials> of(cells.size());
   CountedVector<CellRun> runs(work.memory);
   tbb::enumerable_thread_specific<MaterialFilter> filters(
-      [&] { return MaterialFilter(dag, index, source, mesh.triangle_materials, work.memory); });
+      [&] { return MaterialFilter(dag, index, source, of_triangles, work.memory); });
   filter_tasks(
       dag, index, cells, MaterialFilter::kBytesPerCell, work, "materials",
       [&](const CellTask& task) {
@@ -73,7 +77,7 @@ MaterialIds filter_materials(const Mesh& mesh, const Grid& grid, const SvdagView
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return cells[a].cell.number < cells[b].cell.number;
   });
-  MaterialEncoder encoder(static_cast<std::uint32_t>(mesh.materials.size()), work.memory);
+  MaterialEncoder encoder(count, work.memory);
   for (const std::size_t i : order) {
     if (!cells[i].is_task) encoder.add(of[i].id, 1);
     for (std::size_t run = of[i].first_run; run < of[i].end_run; ++run)

@@ -26,6 +26,9 @@ enum class SolidRule {
 struct SolidOptions {
   SolidRule rule = SolidRule::kParity;
   double winding_threshold = 0.5;  ///< Positive; for kWinding.
+  /// Sets a voxel if and only if its centre is inside, also where the surface passes. A centre on
+  /// the surface belongs to one side, so that bodies that touch share no voxel. Not for kFlood.
+  bool by_centre = false;
 };
 
 /// Returns the minimal DAG, in canonical order, of the voxels of `cover`, which must be the DAG of
@@ -33,8 +36,13 @@ struct SolidOptions {
 /// a connected set of them are inside or none is, but for kWinding in holes. Time and memory grow
 /// with `cover`, the mesh and the area of its holes, not with the voxels.
 ///
+/// A face of the mesh that lies exactly between voxels belongs to the voxels on the side of the
+/// body: the voxels beyond it, which the body only touches, are not set. kFlood, which knows no
+/// body, keeps them.
+///
 /// kParity throws Error if the mesh is not closed. kParity and kWinding throw Error if the mesh
-/// reaches out of the range of QuantizedMesh. Throws OverMemory and Cancelled.
+/// reaches out of the range of QuantizedMesh. kFlood throws Error for by_centre. Throws OverMemory
+/// and Cancelled.
 Svdag fill_solid(const SvdagView& cover, const Mesh& mesh, const Grid& grid,
                  const SolidOptions& options, Work work = {});
 

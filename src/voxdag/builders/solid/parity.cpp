@@ -34,7 +34,8 @@ int side_of_edge(const Vec3l& a, const Vec3l& b, const Vec3l& p) {
   return dz != 0 ? -sign_of(dz) : sign_of(dy);
 }
 
-/// Returns whether the ray from p along +x crosses the triangle, in which p must not lie.
+/// Returns whether the ray from p along +x crosses the triangle. A point in the triangle lies
+/// beside it, as the ray does, and by an infinitely smaller step along x.
 bool crosses(const std::array<Vec3l, 3>& t, const Vec3l& p) {
   const int side = side_of_edge(t[0], t[1], p);
   if (side == 0 || side_of_edge(t[1], t[2], p) != side || side_of_edge(t[2], t[0], p) != side)
@@ -44,7 +45,11 @@ bool crosses(const std::array<Vec3l, 3>& t, const Vec3l& p) {
   const Int128 above = static_cast<Int128>(normal.x) * to_p.x +
                        static_cast<Int128>(normal.y) * to_p.y +
                        static_cast<Int128>(normal.z) * to_p.z;
-  return sign_of(above) * sign_of(normal.x) < 0;
+  const int side_of_plane = above != 0      ? sign_of(above)
+                            : normal.y != 0 ? sign_of(normal.y)
+                            : normal.z != 0 ? sign_of(normal.z)
+                                            : sign_of(normal.x);
+  return side_of_plane * sign_of(normal.x) < 0;
 }
 
 }  // namespace

@@ -8,7 +8,8 @@
 namespace voxdag {
 
 /// Returns for each voxel whether the ray from its centre along +x crosses an odd number of
-/// triangles. No triangle may meet these voxels. All triangles count, also exact duplicates.
+/// triangles. A centre in a triangle lies on one of its sides, the same for all triangles of a
+/// surface. All triangles count, also exact duplicates.
 ///
 /// Exact: the ray lies beside the centre by infinitely small steps in y and, much smaller, in z. So
 /// it meets no edge, and each edge that lies in its way counts to exactly one side. (Edelsbrunner

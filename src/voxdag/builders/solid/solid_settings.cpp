@@ -6,7 +6,7 @@
 namespace voxdag {
 namespace {
 
-constexpr const char* kThreshold = "winding_threshold";
+constexpr const char *kThreshold = "winding_threshold", *kRule = "solid_rule";
 
 /// Returns the shortest text that reads as this number.
 std::string text_of(double number) {
@@ -46,6 +46,7 @@ void add_solid_settings(const SolidOptions& options, std::map<std::string, std::
   settings["solid"] = name_of(options.rule);
   if (options.rule == SolidRule::kWinding)
     settings[kThreshold] = text_of(options.winding_threshold);
+  if (options.by_centre) settings[kRule] = "centre";
 }
 
 SolidOptions solid_options(const std::map<std::string, std::string>& settings) {
@@ -53,6 +54,11 @@ SolidOptions solid_options(const std::map<std::string, std::string>& settings) {
   options.rule = solid_rule(settings.at("solid"));
   if (const auto threshold = settings.find(kThreshold); threshold != settings.end())
     options.winding_threshold = positive_number(threshold->second);
+  if (const auto rule = settings.find(kRule); rule != settings.end()) {
+    if (rule->second != "centre")
+      throw std::invalid_argument("\"" + rule->second + "\" is no rule for voxels");
+    options.by_centre = true;
+  }
   return options;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -84,6 +85,14 @@ void clip(const Vec3<Vec3d>& corners, const Grid& grid, std::vector<QuantizedTri
 
 }  // namespace
 
+int levels_of(std::int64_t voxels) {
+  if (voxels < 1 || voxels > std::int64_t{1} << kMaxLevels)
+    throw Error("a grid must have 1 to 2^" + std::to_string(kMaxLevels) + " voxels a side, not " +
+                std::to_string(voxels));
+  return std::max(kMinLevels,
+                  static_cast<int>(std::bit_width(static_cast<std::uint64_t>(voxels - 1))));
+}
+
 Grid fit_grid(const Mesh& mesh, int levels) {
   require_levels(levels);
   return fit_grid(referenced_bounds(mesh), levels);
@@ -91,11 +100,15 @@ Grid fit_grid(const Mesh& mesh, int levels) {
 
 Grid fit_grid(const Box3d& bounds, int levels) {
   require_levels(levels);
+  return fit_voxels(bounds, std::int64_t{1} << levels);
+}
+
+Grid fit_voxels(const Box3d& bounds, std::int64_t voxels) {
+  Grid grid;
+  grid.levels = levels_of(voxels);
   require_triangles(bounds);
   const double ext = longest_side(bounds);
-  const double units = static_cast<double>((std::int64_t{1} << levels) * kSubvoxels - 1);
-  Grid grid;
-  grid.levels = levels;
+  const double units = static_cast<double>(voxels * kSubvoxels - 1);
   grid.origin = bounds.lo;
   grid.quantization_scale = ext > 0 ? units / ext : kSubvoxels;
   if (!std::isfinite(grid.quantization_scale))
@@ -119,9 +132,14 @@ Grid grid_from_voxel_size(const Box3d& bounds, double voxel_size) {
 
 Grid grid_from_bounds(const Box3d& bounds, int levels) {
   require_levels(levels);
+  return divide_bounds(bounds, std::int64_t{1} << levels);
+}
+
+Grid divide_bounds(const Box3d& bounds, std::int64_t voxels) {
+  const int levels = levels_of(voxels);
   const double side = bounds.is_empty() ? 0 : longest_side(bounds);
   if (!(side > 0) || !std::isfinite(side)) throw Error("the bounds must have a positive size");
-  const double n = static_cast<double>(std::int64_t{1} << levels);
+  const auto n = static_cast<double>(voxels);
   return {levels, bounds.lo, side / n, n * kSubvoxels / side};
 }
 

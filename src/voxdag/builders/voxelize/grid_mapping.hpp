@@ -14,6 +14,10 @@
 
 namespace voxdag {
 
+/// Returns the levels of the least grid of at least `voxels` voxels a side. Throws Error for other
+/// numbers than 1 to 2^kMaxLevels.
+int levels_of(std::int64_t voxels);
+
 /// Returns the grid of 2^levels voxels a side that fits the mesh: its origin is the lower corner of
 /// the mesh's bounds, and the longest side spans all voxels. Throws Error if levels is outside
 /// [kMinLevels, kMaxLevels] or the mesh has no triangles. A mesh that is one point gets a grid of
@@ -21,6 +25,10 @@ namespace voxdag {
 Grid fit_grid(const Mesh& mesh, int levels);
 /// Returns the grid that fits a mesh with these bounds: of the vertices that its triangles use.
 Grid fit_grid(const Box3d& bounds, int levels);
+
+/// Returns the least grid in which the longest side of a mesh with these bounds spans `voxels`
+/// voxels, 1 to 2^kMaxLevels: fit_grid() for any number. The other voxels stay empty.
+Grid fit_voxels(const Box3d& bounds, std::int64_t voxels);
 
 /// Returns the smallest grid that holds the mesh, with voxels of `voxel_size` world units and the
 /// origin of fit_grid(). Throws Error if it needs more than kMaxLevels levels.
@@ -31,6 +39,10 @@ Grid grid_from_voxel_size(const Box3d& bounds, double voxel_size);
 /// Returns the grid of 2^levels voxels a side whose origin is bounds.lo and whose side is the
 /// longest side of `bounds`. Parts of a mesh outside the grid are clipped away.
 Grid grid_from_bounds(const Box3d& bounds, int levels);
+
+/// Returns the least grid with its origin at bounds.lo in which the longest side of `bounds` spans
+/// `voxels` voxels, 1 to 2^kMaxLevels: grid_from_bounds() for any number.
+Grid divide_bounds(const Box3d& bounds, std::int64_t voxels);
 
 /// Returns the smallest grid that holds `bounds`, with its origin at bounds.lo and voxels of
 /// `voxel_size` world units.

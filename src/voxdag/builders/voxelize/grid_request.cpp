@@ -1,26 +1,101 @@
 #include "voxdag/builders/voxelize/grid_request.hpp"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/mesh/mesh_bounds.hpp"
 
 namespace voxdag {
+namespace {
+
+/// Returns the greatest multiple of `size` that is not above `x`. A quotient within its rounding
+/// errors of a whole number counts as whole: 0.3 is a multiple of 0.1.
+double multiple_below(double x, double size) {
+  const double at = x / size, whole = std::nearbyint(at);
+  return (std::abs(at - whole) <= 4 * 0x1p-53 * std::abs(at) ? whole : std::floor(at)) * size;
+}
+
+/// Returns how many voxels the box takes along each axis, from its lower corner on. Vertices lie on
+/// units of 1/256 voxel; only those of a mesh (not of bounds) on the upper side take a voxel there.
+Vec3l used_voxels(const Grid& grid, const Box3d& box, bool has_upper_sides) {
+  Vec3l used;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double units = std::round((box.hi[axis] - box.lo[axis]) * grid.quantization_scale);
+    used[axis] =
+        static_cast<std::int64_t>(std::floor((units + (has_upper_sides ? 0 : -1)) / 256)) + 1;
+    used[axis] = std::max<std::int64_t>(used[axis], 1);
+  }
+  return used;
+}
+
+}  // namespace
 
 Grid grid_for(const Mesh& mesh, const GridRequest& request) {
   return grid_for(request.bounds ? Box3d::empty() : referenced_bounds(mesh), request);
 }
 
 Grid grid_for(const Box3d& mesh_bounds, const GridRequest& request) {
-  if (request.bounds)
-    return request.levels ? grid_from_bounds(*request.bounds, *request.levels)
-                          : grid_from_bounds(*request.bounds, *request.voxel_size);
-  return request.levels ? fit_grid(mesh_bounds, *request.levels)
-                        : grid_from_voxel_size(mesh_bounds, *request.voxel_size);
+  Box3d box = request.bounds.value_or(mesh_bounds);
+  if (request.origin && !box.is_empty()) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (box.hi[axis] < (*request.origin)[axis])
+        throw Error("all of the input lies below the origin of the grid");
+    box.lo = *request.origin;
+  }
+  if (request.snap && request.voxel_size && !box.is_empty())
+    for (int axis = 0; axis < 3; ++axis)
+      box.lo[axis] = multiple_below(box.lo[axis], *request.voxel_size);
+  Grid grid;
+  if (request.resolution) {
+    const std::int64_t inner = *request.resolution - 2 * request.padding;
+    if (inner < 1)
+      throw Error("a padding of " + std::to_string(request.padding) +
+                  " voxels on each side leaves "
+                  "none of " +
+                  std::to_string(*request.resolution));
+    grid = request.bounds ? divide_bounds(box, inner) : fit_voxels(box, inner);
+  } else {
+    grid = request.bounds ? grid_from_bounds(box, *request.voxel_size)
+                          : grid_from_voxel_size(box, *request.voxel_size);
+  }
+  return with_margins(grid, used_voxels(grid, box, !request.bounds), request);
+}
+
+Grid with_margins(Grid grid, Vec3l used, const GridRequest& request) {
+  if (request.padding == 0 && !request.center) return grid;
+  Vec3d shift{};
+  const std::int64_t longest = std::max({used.x, used.y, used.z}) + 2 * request.padding;
+  while (grid.resolution() < longest)
+    if (++grid.levels > kMaxLevels)
+      throw Error("with its padding, the grid would have more than 2^" +
+                  std::to_string(kMaxLevels) + " voxels a side");
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t middle = (grid.resolution() - used[axis]) / 2;
+    shift[axis] = static_cast<double>(request.center ? middle : request.padding);
+  }
+  grid.origin = grid.origin - shift * grid.voxel_size;
+  if (request.snap)
+    for (int axis = 0; axis < 3; ++axis)
+      grid.origin[axis] = std::nearbyint(grid.origin[axis] / grid.voxel_size) * grid.voxel_size;
+  return grid;
 }
 
 std::map<std::string, std::string> settings_of(const GridRequest& request) {
-  return {{"cover", "exact"},
-          {"grid_from", request.bounds ? "bounds" : "mesh"},
-          {"scale_from", request.levels ? "resolution" : "voxel_size"}};
+  std::map<std::string, std::string> settings = {
+      {"cover", "exact"},
+      {"grid_from", request.bounds   ? "bounds"
+                    : request.origin ? "origin"
+                                     : "mesh"},
+      {"scale_from", request.resolution ? "resolution" : "voxel_size"}};
+  if (request.resolution && !std::has_single_bit(static_cast<std::uint64_t>(*request.resolution)))
+    settings["resolution"] = std::to_string(*request.resolution);
+  if (request.snap) settings["snap"] = "yes";
+  if (request.padding != 0) settings["padding"] = std::to_string(request.padding);
+  if (request.center) settings["center"] = "yes";
+  return settings;
 }
 
 }  // namespace voxdag

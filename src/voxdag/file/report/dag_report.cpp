@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -86,8 +87,19 @@ std::string normal_error(const AttributesMetadata& metadata, std::uint64_t cells
   return fmt::format(", mean error {:.2f}°", metadata.normal_mean_degrees(cells));
 }
 
-/// Returns lines that describe the attributes; an empty text if there are none.
-std::string attributes_table(const AttributesMetadata& metadata, const AttributeSizes& sizes) {
+/// Returns the first names of a list, separated by commas.
+std::string first_names(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i)
+    text += (i == 0 ? ": " : ", ") + printable(names[i].empty() ? "(no name)" : names[i]);
+  return names.size() > kMost ? text + ", ..." : text;
+}
+
+/// Returns lines that describe the attributes; an empty text if there are none. `ids` says what the
+/// material ids stand for.
+std::string attributes_table(const AttributesMetadata& metadata, const AttributeSizes& sizes,
+                             const std::string& ids) {
   if (metadata.resolution == 0) return "";
   std::string text =
       fmt::format("\n  {:<14}{} of {}³ and coarser, index {}\n", "cells", with_commas(sizes.cells),
@@ -100,7 +112,8 @@ std::string attributes_table(const AttributesMetadata& metadata, const Attribute
   if (metadata.normals) add("normals", sizes.normal_bytes, normal_error(metadata, sizes.cells));
   if (metadata.materials)
     add("material ids", sizes.material_bytes,
-        fmt::format(", {} materials", with_commas(metadata.materials->size())));
+        fmt::format(", {} {}s{}", with_commas(metadata.materials->size()), ids,
+                    first_names(*metadata.materials)));
   return text;
 }
 
@@ -194,7 +207,10 @@ std::string dag_table(const DagReport& report) {
               ratio_of(svo_bytes, report.svdag_bytes()));
   text += row("bits/voxel", fmt::format("{:.3f}", bits_per_voxel(svo_bytes, counts)),
               fmt::format("{:.3f}", bits_per_voxel(report.svdag_bytes(), counts)), "");
-  text += attributes_table(report.metadata.attributes, report.attributes);
+  const auto ids = report.metadata.build.find("ids");
+  text +=
+      attributes_table(report.metadata.attributes, report.attributes,
+                       ids == report.metadata.build.end() ? "material" : printable(ids->second));
   if (!report.compact) return text;
   const CompactBytes& compact = *report.compact;
   text += '\n';

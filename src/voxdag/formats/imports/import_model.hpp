@@ -5,6 +5,7 @@
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/file/model/dag_model.hpp"
 #include "voxdag/formats/imports/import_voxels.hpp"
+#include "voxdag/mesh/input_transform.hpp"
 
 namespace voxdag {
 
@@ -15,9 +16,10 @@ struct ImportedModel {
   std::uint64_t not_finite = 0;  ///< Points that are not finite, which are left out.
 };
 
-/// Imports a source with import_voxels(). The metadata call it `name`. Throws Error, OverMemory and
-/// Cancelled.
+/// Imports a source with import_voxels(). The metadata call it `name` and have `transform`, which
+/// moved it. Throws Error, OverMemory and Cancelled.
 ImportedModel import_model(const VoxelSource& source, const ImportOptions& options,
-                           const std::string& name, Work work = {});
+                           const std::string& name, Work work = {},
+                           const TransformRequest& transform = {});
 
 }  // namespace voxdag

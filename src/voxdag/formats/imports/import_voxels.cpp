@@ -60,36 +60,37 @@ Grid grid_of_voxels(const VoxelSource& source, const ImportOptions& options, Wor
   grid.voxel_size = options.voxel_size.value_or(grid.voxel_size);
   grid.origin = options.origin.value_or(grid.origin * (options.voxel_size ? grid.voxel_size : 1));
   grid.quantization_scale = kSubvoxels / grid.voxel_size;
-  grid.levels = options.levels.value_or(grid.levels);
+  if (options.resolution) grid.levels = levels_of(*options.resolution);
   return grid;
 }
 
 Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Work work) {
-  if (options.bounds)
-    return options.levels ? grid_from_bounds(*options.bounds, *options.levels)
-                          : grid_from_bounds(*options.bounds, *options.voxel_size);
+  if (options.bounds) return grid_for(Box3d::empty(), options);
   if (const std::optional<Grid> grid = source.grid();
-      grid && !options.levels && !options.origin &&
-      options.voxel_size.value_or(grid->voxel_size) == grid->voxel_size)
+      grid && !options.resolution && !options.origin && !options.snap && options.padding == 0 &&
+      !options.center && options.voxel_size.value_or(grid->voxel_size) == grid->voxel_size)
     return *grid;
   const Extent extent = extent_of(source, work);
   if (extent.count == 0)
     throw Error("", "",
                 extent.not_finite > 0 ? "has only points that are not finite, so it has no bounds"
                                       : "has no points, so it has no bounds");
-  if (options.levels) {
-    Box3d bounds{extent.lo, extent.hi};
+  if (options.resolution) {
+    GridRequest request = options;
+    Box3d bounds{request.origin.value_or(extent.lo), extent.hi};
+    request.origin.reset();
     // One point has a grid of voxels of size 1, as a mesh of one point has.
     if (bounds.lo == bounds.hi)
-      bounds.hi = bounds.lo + Vec3d{1, 1, 1} * std::ldexp(1.0, *options.levels);
-    return grid_from_bounds(bounds, *options.levels);
+      bounds.hi = bounds.lo + Vec3d{1, 1, 1} * static_cast<double>(*options.resolution);
+    request.bounds = bounds;
+    return grid_for(Box3d::empty(), request);
   }
-  if (options.origin) {
-    const Vec3d side = extent.hi - *options.origin;
-    return grid_from_voxel_size(
-        Box3d{*options.origin,
-              *options.origin + Vec3d{1, 1, 1} * std::max({0.0, side.x, side.y, side.z})},
-        *options.voxel_size);
+  if (options.origin || options.snap) {
+    GridRequest request = options;
+    Box3d bounds{extent.lo, extent.hi};
+    // Points below the origin are left out, even if those are all.
+    if (options.origin) bounds.hi = max(bounds.hi, *options.origin);
+    return grid_for(bounds, request);
   }
   // Each axis begins half a voxel below the least coordinate; the last voxel is that of the
   // greatest one.
@@ -98,9 +99,14 @@ Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Wor
   grid.origin = extent.lo - Vec3d{0.5, 0.5, 0.5} * size;
   const PointLocator locator(grid, source.coordinate_error());
   double last = 0;
-  for (int axis = 0; axis < 3; ++axis) last = std::max(last, locator.index(extent.hi[axis], axis));
+  Vec3l used;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double index = locator.index(extent.hi[axis], axis);
+    last = std::max(last, index);
+    used[axis] = static_cast<std::int64_t>(index) + 1;
+  }
   grid.levels = grid_from_voxel_size(Box3d{{0, 0, 0}, Vec3d{1, 1, 1} * (last * size)}, size).levels;
-  return grid;
+  return with_margins(grid, used, options);
 }
 
 }  // namespace
@@ -119,7 +125,7 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
         throw Error("", "", "has a voxel at a coordinate beyond 2^31");
       return static_cast<Vec3i>(place);
     }
-    if (!options.bounds && !options.origin) return locator.voxel_in_box(place);
+    if (!options.bounds && !options.origin && !options.snap) return locator.voxel_in_box(place);
     return locator.voxel(place);
   };
   // Calls add(voxel, index) for all places in the grid.

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "voxdag/builders/attributes/build_attributes.hpp"
+#include "voxdag/builders/voxelize/grid_request.hpp"
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/formats/imports/voxel_source.hpp"
@@ -10,12 +11,10 @@
 
 namespace voxdag {
 
-struct ImportOptions {
-  std::optional<int> levels;         ///< log2 of the voxels per side.
-  std::optional<double> voxel_size;  ///< World units; for points, and for voxels without a place.
-  std::optional<Vec3d> origin;       ///< Lower corner of the grid, for the same.
-  std::optional<Box3d> bounds;       ///< For points: what the grid holds.
-  bool colors = true;                ///< Stores the colours of files that have some.
+/// The grid is for points; of voxels, `resolution` is the least side of the grid, and `voxel_size`
+/// and `origin` are for those without a place.
+struct ImportOptions : GridRequest {
+  bool colors = true;  ///< Stores the colours of files that have some.
   /// AttributeOptions::color_bound. Default: 0.05; 0 for sources with a palette.
   std::optional<double> color_bound;
   std::filesystem::path folder;  ///< Of files for sorting.
@@ -36,14 +35,14 @@ struct ImportResult {
 };
 
 /// Sets the voxel of each point (see PointLocator), or each voxel. Points need exactly one of
-/// `levels` and `voxel_size`. Without `bounds` and with `levels`, the grid is that of their
+/// `resolution` and `voxel_size`. Without `bounds` and with `resolution`, the grid is that of their
 /// bounding box, as for a mesh, and points on its upper sides belong to the last voxels. Without
-/// `bounds` and with `voxel_size`, the grid begins half a voxel below the least coordinates, so
-/// that points of a lattice lie in the middle of their voxels. Voxels need neither: without
-/// `levels` the grid is that of the file, or the smallest one with its corner at 0 that holds them.
-/// Reads the file once or twice; memory is bounded. Throws Error, OverMemory and Cancelled.
-/// Voxels of sources without a place lie in a grid of `voxel_size` (default 1) with its corner at
-/// `origin` (default 0).
+/// `bounds`, `origin` and `snap` and with `voxel_size`, the grid begins half a voxel below the
+/// least coordinates, so that points of a lattice lie in the middle of their voxels. Voxels need
+/// neither: without `resolution` the grid is that of the file, or the smallest one with its corner
+/// at 0 that holds them. Reads the file once or twice; memory is bounded. Throws Error, OverMemory
+/// and Cancelled. Voxels of sources without a place lie in a grid of `voxel_size` (default 1) with
+/// its corner at `origin` (default 0).
 ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options, Work work = {});
 
 }  // namespace voxdag

@@ -19,6 +19,8 @@ struct ReadOptions {
   bool allow_outside = false;
   /// Whether assimp may use all its importers. If false, it uses only those that survive fuzzing.
   bool any_assimp_importer = false;
+  /// Whether to read the objects of the mesh: `o` and `g` of OBJ, nodes of glTF.
+  bool objects = false;
   /// If not null: receives the paths of all files that the mesh names (MTL, buffers, textures), so
   /// that the caller does not overwrite them. They need not exist.
   std::vector<std::filesystem::path>* named_files = nullptr;

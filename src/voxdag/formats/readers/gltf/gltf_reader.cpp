@@ -108,7 +108,23 @@ class GltfReader {
     if (has_colors_) appearance_.colors.resize(3 * triangles);
   }
 
+  /// Begins the object of an instance, named after its node or mesh.
+  void add_object(const GltfInstance& instance) {
+    std::string name;
+    const bool has_node = instance.node != kGltfNoNode;
+    if (has_node) name = file_.array(GltfArray::kNodes)[instance.node]["name"].text();
+    if (name.empty()) name = file_.array(GltfArray::kMeshes)[instance.mesh]["name"].text();
+    if (name.empty())
+      name = has_node ? "node " + std::to_string(instance.node)
+                      : "mesh " + std::to_string(instance.mesh);
+    memory_.resize(memory_.bytes() + 2 * (sizeof name + name.size() + sizeof(ObjectRun)));
+    mesh_.object_runs.push_back(
+        {mesh_.triangles.size(), static_cast<std::uint32_t>(mesh_.objects.size())});
+    mesh_.objects.push_back(std::move(name));
+  }
+
   void add_instance(const GltfInstance& instance) {
+    if (source_.options.objects) add_object(instance);
     const auto first_vertex = static_cast<std::uint32_t>(mesh_.vertices.size());
     pose_.start(instance);
     for (const GltfPrimitive& primitive : meshes_[instance.mesh].primitives) {

@@ -93,6 +93,11 @@ ObjChunk ObjFile::count(std::string_view chunk, ReadParts parts) const {
           case ObjStatement::kLibrary:
             counted.libraries.find_or_add(trim(line));
             break;
+          case ObjStatement::kObject:
+            if (source_.options.objects)
+              counted.object_runs.push_back(
+                  {counted.counts.triangles, counted.objects.find_or_add(trim(line))});
+            break;
           default:
             break;
         }

@@ -16,7 +16,7 @@ namespace voxdag {
 class ObjAttributes;
 struct ObjReferences;
 
-enum class ObjStatement { kVertex, kUv, kNormal, kFace, kMaterial, kLibrary, kOther };
+enum class ObjStatement { kVertex, kUv, kNormal, kFace, kMaterial, kLibrary, kObject, kOther };
 
 /// Removes the keyword from a line, which must not start with a blank, and returns the statement
 /// that it stands for.
@@ -35,6 +35,7 @@ inline ObjStatement take_keyword(std::string_view& line) {
   const std::string_view keyword = next_token(line);
   if (keyword == "usemtl") return ObjStatement::kMaterial;
   if (keyword == "mtllib") return ObjStatement::kLibrary;
+  if (keyword == "o" || keyword == "g") return ObjStatement::kObject;
   return ObjStatement::kOther;
 }
 
@@ -72,11 +73,14 @@ struct ObjRun {
 
 /// The contents of a chunk.
 struct ObjChunk {
-  explicit ObjChunk(MemoryBudget* memory) : materials(memory), libraries(memory), runs(memory) {}
+  explicit ObjChunk(MemoryBudget* memory)
+      : materials(memory), libraries(memory), objects(memory), object_runs(memory), runs(memory) {}
 
   ObjCounts counts;
-  NameTable materials, libraries;   ///< Arguments of `usemtl` and `mtllib`.
-  std::uint32_t last_material = 0;  ///< Index into `materials` of the last `usemtl`.
+  NameTable materials, libraries;        ///< Arguments of `usemtl` and `mtllib`.
+  NameTable objects;                     ///< Arguments of `o` and `g`, if they are read.
+  CountedVector<ObjectRun> object_runs;  ///< Where each begins; indices into `objects`.
+  std::uint32_t last_material = 0;       ///< Index into `materials` of the last `usemtl`.
   bool has_faces = false, has_faces_before_material = false;
   bool has_colors = false;     ///< Some vertex has six numbers.
   CountedVector<ObjRun> runs;  ///< In order. None if there would be more than kMaxRuns.

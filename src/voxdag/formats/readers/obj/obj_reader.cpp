@@ -33,6 +33,8 @@ class ObjReader {
         texts_(file_.chunks().all()),
         memory_(source.work().memory, 0),
         material_ids_(source.work().memory),
+        object_names_(source.work().memory),
+        object_runs_(source.work().memory),
         libraries_(source.work().memory),
         mesh_(empty_mesh(source.options.arrays)) {}
 
@@ -71,6 +73,9 @@ class ObjReader {
       if (is_whole)
         for (const bool has_values : {true, false})
           chunks_.back().runs.push_back({texts_[c], has_values, {}});
+      for (const ObjectRun& run : chunk.object_runs)
+        object_runs_.push_back({totals_.triangles + run.first_triangle,
+                                object_names_.find_or_add(chunk.objects[run.object])});
       totals_ += chunk.counts;
       for (std::size_t i = 0; i < chunk.materials.size(); ++i)
         material_ids_.find_or_add(chunk.materials[i]);
@@ -96,6 +101,10 @@ class ObjReader {
       for (std::size_t i = 0; i < material_ids_.size(); ++i)
         bytes += sizeof(std::string) + material_ids_[i].size() + 1;
     }
+    set_objects();
+    bytes += mesh_.objects.size() * sizeof(std::string) +
+             mesh_.object_runs.capacity() * sizeof(ObjectRun);
+    for (const std::string& name : mesh_.objects) bytes += name.capacity();
     memory_.resize(bytes);
     mesh_.vertices.resize(totals_.vertices);
     mesh_.triangles.resize(totals_.triangles);
@@ -106,6 +115,25 @@ class ObjReader {
         mesh_.materials.push_back(material_ids_[i]);
     }
     if (parts_ == ReadParts::kMeshAndAppearance) attributes_.emplace(source_, totals_, has_colors);
+  }
+
+  /// Numbers the objects that have triangles, in the order of their first ones.
+  void set_objects() {
+    if (object_runs_.empty()) return;
+    const std::uint32_t unnamed = object_names_.find_or_add("default");
+    NameTable used(source_.work().memory);
+    const auto add = [&](std::uint64_t first, std::uint64_t end, std::uint32_t name) {
+      if (first == end) return;
+      const std::uint32_t object = used.find_or_add(object_names_[name]);
+      if (mesh_.object_runs.empty() || mesh_.object_runs.back().object != object)
+        mesh_.object_runs.push_back({first, object});
+    };
+    add(0, object_runs_[0].first_triangle, unnamed);
+    for (std::size_t i = 0; i < object_runs_.size(); ++i)
+      add(object_runs_[i].first_triangle,
+          i + 1 < object_runs_.size() ? object_runs_[i + 1].first_triangle : totals_.triangles,
+          object_runs_[i].object);
+    for (std::size_t i = 0; i < used.size(); ++i) mesh_.objects.emplace_back(used[i]);
   }
 
   /// Reads the vertices, then the faces. A face can precede its vertices, and cutting it needs them
@@ -173,7 +201,9 @@ class ObjReader {
   std::vector<PlacedChunk> chunks_;
   ObjCounts totals_;
   MemoryReservation memory_;  ///< The arrays of the mesh.
-  NameTable material_ids_, libraries_;
+  NameTable material_ids_, object_names_;
+  CountedVector<ObjectRun> object_runs_;  ///< In the order of the file, with empty ones.
+  NameTable libraries_;
   std::optional<ObjAttributes> attributes_;  ///< Set if the appearance is read.
   Mesh mesh_;
 };

@@ -1,0 +1,204 @@
+#include "voxdag/formats/imports/moved_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "voxdag/algebra/align_grids.hpp"
+#include "voxdag/core/error.hpp"
+
+namespace voxdag {
+namespace {
+
+/// A source that passes on what another says.
+class DerivedSource : public VoxelSource {
+ public:
+  explicit DerivedSource(std::unique_ptr<VoxelSource> source) : source_(std::move(source)) {}
+
+  bool has_points() const override { return source_->has_points(); }
+  bool has_colors() const override { return source_->has_colors(); }
+  bool has_palette() const override { return source_->has_palette(); }
+  std::vector<std::string> warnings() const override { return source_->warnings(); }
+
+ protected:
+  /// Calls visit() with all places as place_of() returns them.
+  template <class PlaceOf>
+  void visit_moved(const VisitBatch& visit, const PlaceOf& place_of) const {
+    std::vector<Vec3d> places;
+    source_->visit_all([&](const VoxelBatch& batch) {
+      places.clear();
+      for (const Vec3d place : batch.places) places.push_back(place_of(place));
+      visit({places, batch.colors});
+    });
+  }
+
+  std::unique_ptr<VoxelSource> source_;
+};
+
+class MovedPoints final : public DerivedSource {
+ public:
+  MovedPoints(std::unique_ptr<VoxelSource> source, const InputTransform& transform)
+      : DerivedSource(std::move(source)), transform_(transform) {}
+
+  CoordinateError coordinate_error() const override {
+    CoordinateError error = source_->coordinate_error();
+    const Vec3d of_file = error.absolute;
+    const double most = std::max({of_file.x, of_file.y, of_file.z}) * transform_.factor();
+    // The transform rounds once more.
+    return {2 * error.relative, {most, most, most}};
+  }
+  void visit_all(const VisitBatch& visit) const override {
+    visit_moved(visit, [this](Vec3d point) { return transform_.point(point); });
+  }
+
+ private:
+  InputTransform transform_;
+};
+
+class TurnedVoxels final : public DerivedSource {
+ public:
+  TurnedVoxels(std::unique_ptr<VoxelSource> source, const InputTransform& transform)
+      : DerivedSource(std::move(source)), transform_(transform) {
+    if (!transform.keeps_axes()) throw Error("", "", "holds voxels, which turn by quarters only");
+    grid_ = source_->grid();
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3d unit{};
+      unit[axis] = 1;
+      const Vec3d turned = transform.turned(unit);
+      for (int to = 0; to < 3; ++to)
+        if (turned[to] != 0) from_[to] = axis, is_flipped_[to] = turned[to] < 0;
+    }
+    if (!grid_) {
+      if (transform.factor() != 1 || transform.point({}) != Vec3d{})
+        throw Error("", "",
+                    "does not say where its voxels lie: --voxel-size and --origin do that, not "
+                    "--unit, --scale and --translate");
+      find_sides();
+      return;
+    }
+    sides_ = Vec3d{1, 1, 1} * static_cast<double>(grid_->resolution());
+    const Vec3d corner = transform.point(grid_->origin);
+    grid_->voxel_size *= transform.factor();
+    grid_->quantization_scale = kSubvoxels / grid_->voxel_size;
+    grid_->origin = corner;
+    for (int axis = 0; axis < 3; ++axis)
+      if (is_flipped_[axis]) grid_->origin[axis] -= sides_[axis] * grid_->voxel_size;
+  }
+
+  bool has_place() const override { return source_->has_place(); }
+  std::optional<Grid> grid() const override { return grid_; }
+  void visit_all(const VisitBatch& visit) const override {
+    visit_moved(visit, [this](Vec3d voxel) {
+      Vec3d turned;
+      for (int axis = 0; axis < 3; ++axis) {
+        const int from = from_[axis];
+        turned[axis] = is_flipped_[axis] ? sides_[from] - 1 - voxel[from] : voxel[from];
+      }
+      return turned;
+    });
+  }
+
+ private:
+  /// Finds the sides of the box from voxel 0 on that holds all voxels.
+  void find_sides() {
+    source_->visit_all([this](const VoxelBatch& batch) {
+      for (const Vec3d voxel : batch.places) sides_ = max(sides_, voxel + Vec3d{1, 1, 1});
+    });
+  }
+
+  InputTransform transform_;
+  std::optional<Grid> grid_;
+  int from_[3] = {};
+  bool is_flipped_[3] = {};
+  Vec3d sides_{1, 1, 1};  ///< In voxels, along the axes of the source.
+};
+
+class JoinedSource final : public VoxelSource {
+ public:
+  explicit JoinedSource(std::vector<std::unique_ptr<VoxelSource>> sources)
+      : sources_(std::move(sources)), offsets_(sources_.size()) {
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      const VoxelSource& source = *sources_[i];
+      if (source.has_points() != has_points())
+        throw Error("", "", "holds points, but another input voxels, or the other way round");
+      has_colors_ |= source.has_colors();
+      if (!has_points()) add_grid(i);
+    }
+  }
+
+  bool has_points() const override { return sources_[0]->has_points(); }
+  bool has_colors() const override { return has_colors_; }
+  bool has_palette() const override {
+    return std::all_of(sources_.begin(), sources_.end(),
+                       [](const auto& source) { return source->has_palette(); });
+  }
+  bool has_place() const override { return sources_[0]->has_place(); }
+  std::optional<Grid> grid() const override { return grid_; }
+  CoordinateError coordinate_error() const override {
+    CoordinateError most = sources_[0]->coordinate_error();
+    for (const auto& source : sources_) {
+      const CoordinateError error = source->coordinate_error();
+      most.relative = std::max(most.relative, error.relative);
+      most.absolute = max(most.absolute, error.absolute);
+    }
+    return most;
+  }
+  void visit_all(const VisitBatch& visit) const override {
+    std::vector<Vec3d> places;
+    std::vector<Rgb8> grey;
+    for (std::size_t i = 0; i < sources_.size(); ++i)
+      sources_[i]->visit_all([&](const VoxelBatch& batch) {
+        VoxelBatch moved = batch;
+        if (offsets_[i] != Vec3i{}) {
+          places.clear();
+          for (const Vec3d place : batch.places)
+            places.push_back(place + static_cast<Vec3d>(offsets_[i]));
+          moved.places = places;
+        }
+        if (has_colors_ && batch.colors.empty()) {
+          grey.resize(batch.places.size(), {204, 204, 204});
+          moved.colors = std::span(grey).first(batch.places.size());
+        }
+        visit(moved);
+      });
+  }
+
+ private:
+  /// Lets the common grid hold that of source `i`.
+  void add_grid(std::size_t i) {
+    const std::optional<Grid> grid = sources_[i]->grid();
+    if (i > 0 && grid.has_value() != grid_.has_value())
+      throw Error("", "",
+                  "says where its voxels lie, but another input does not, or the other way "
+                  "round");
+    if (!grid || i == 0) {
+      grid_ = grid;
+      return;
+    }
+    const AlignedGrids aligned = align_grids(*grid_, *grid);
+    for (std::size_t k = 0; k < i; ++k) offsets_[k] = offsets_[k] + aligned.first;
+    offsets_[i] = aligned.second;
+    grid_ = aligned.grid;
+  }
+
+  std::vector<std::unique_ptr<VoxelSource>> sources_;
+  std::vector<Vec3i> offsets_;  ///< Of the sources' voxels in the common grid.
+  std::optional<Grid> grid_;
+  bool has_colors_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<VoxelSource> moved_source(std::unique_ptr<VoxelSource> source,
+                                          const InputTransform& transform) {
+  if (transform.is_identity()) return source;
+  if (source->has_points()) return std::make_unique<MovedPoints>(std::move(source), transform);
+  return std::make_unique<TurnedVoxels>(std::move(source), transform);
+}
+
+std::unique_ptr<VoxelSource> joined_source(std::vector<std::unique_ptr<VoxelSource>> sources) {
+  if (sources.size() == 1) return std::move(sources[0]);
+  return std::make_unique<JoinedSource>(std::move(sources));
+}
+
+}  // namespace voxdag

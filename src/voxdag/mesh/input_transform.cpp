@@ -1,0 +1,188 @@
+#include "voxdag/mesh/input_transform.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string_view>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/float_origin.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::pair<std::string_view, double> kUnits[] = {
+    {"mm", 0.001}, {"cm", 0.01}, {"m", 1}, {"in", 0.0254}, {"ft", 0.3048}};
+
+double metres_of(std::string_view unit) {
+  for (const auto& [name, metres] : kUnits)
+    if (name == unit) return metres;
+  throw std::invalid_argument("\"" + std::string(unit) + "\" is none of mm, cm, m, in and ft");
+}
+
+int axis_of(std::string_view text) {
+  if (text.size() != 1 || text[0] < 'x' || text[0] > 'z')
+    throw std::invalid_argument("\"" + std::string(text) + "\" is none of x, y and z");
+  return text[0] - 'x';
+}
+
+double number_of(std::string_view text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number))
+    throw std::invalid_argument("\"" + std::string(text) + "\" is not a number");
+  return number;
+}
+
+/// Returns the shortest text that reads as this number.
+std::string text_of(double number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+/// Splits "from:to". `from` is empty if there is no colon.
+std::pair<std::string_view, std::string_view> from_and_to(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  if (colon == text.npos) return {{}, text};
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+/// Calls body(part) for the parts between commas.
+template <class Body>
+void for_each_part(std::string_view text, const Body& body) {
+  while (!text.empty()) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    body(text.substr(0, comma));
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+}
+
+}  // namespace
+
+FormatCustom custom_of(const std::string& file_name) {
+  std::string name = file_name;
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const char* packed : {".gz", ".zst"})
+    if (name.ends_with(packed)) name.resize(name.size() - std::string_view(packed).size());
+  if (name.ends_with(".gltf") || name.ends_with(".glb")) return {1, "m"};
+  for (const char* ending : {".obj", ".ply", ".off", ".dae", ".fbx", ".vdb"})
+    if (name.ends_with(ending)) return {};
+  return {2, ""};
+}
+
+void add_settings(const TransformRequest& request, std::map<std::string, std::string>& settings) {
+  const auto add = [&](const std::string& name, const std::string& text) {
+    const auto [from, to] = from_and_to(text);
+    if (!to.empty()) settings[name] = to;
+    if (!from.empty()) settings[name + "_from"] = from;
+  };
+  add("up", request.up);
+  add("unit", request.unit);
+  if (request.scale != 1) settings["scale"] = text_of(request.scale);
+  if (!request.rotate.empty()) settings["rotate"] = request.rotate;
+  if (request.translate != Vec3d{})
+    settings["translate"] = text_of(request.translate.x) + "," + text_of(request.translate.y) +
+                            "," + text_of(request.translate.z);
+}
+
+TransformRequest transform_request(const std::map<std::string, std::string>& settings) {
+  const auto text = [&](const std::string& name) {
+    const auto found = settings.find(name);
+    return found == settings.end() ? std::string() : found->second;
+  };
+  const auto both = [&](const std::string& name) {
+    const std::string from = text(name + "_from");
+    return from.empty() ? text(name) : from + ":" + text(name);
+  };
+  TransformRequest request{both("up"), both("unit"), 1, text("rotate"), {}};
+  if (const std::string scale = text("scale"); !scale.empty()) request.scale = number_of(scale);
+  int axis = 0;
+  for_each_part(text("translate"), [&](std::string_view part) {
+    request.translate[std::min(axis++, 2)] = number_of(part);
+  });
+  return request;
+}
+
+InputTransform::InputTransform(const TransformRequest& request, const FormatCustom& custom)
+    : factor_(request.scale), translate_(request.translate) {
+  if (!(request.scale > 0)) throw std::invalid_argument("the scale must be above zero");
+  if (!request.unit.empty()) {
+    const auto [given, to] = from_and_to(request.unit);
+    const double metres = metres_of(to);
+    // Files whose format does not say their unit are in that of the result.
+    const std::string_view from = given.empty() ? std::string_view(custom.unit) : given;
+    if (!from.empty()) factor_ *= metres_of(from) / metres;
+  }
+  if (!request.up.empty()) {
+    const auto [given, to] = from_and_to(request.up);
+    const int from_axis = given.empty() ? custom.up : axis_of(given), to_axis = axis_of(to);
+    // The turn about the third axis; it is positive if the third one follows in the cycle x, y, z.
+    if (from_axis != to_axis)
+      turn(3 - from_axis - to_axis, (from_axis + 1) % 3 == to_axis ? 90 : -90);
+  }
+  for_each_part(request.rotate, [&](std::string_view part) {
+    const auto [axis, degrees] = from_and_to(part);
+    turn(axis_of(axis), number_of(degrees));
+  });
+}
+
+void InputTransform::turn(int axis, double degrees) {
+  const double quarters = degrees / 90;
+  double sine = std::sin(degrees * std::numbers::pi / 180),
+         cosine = std::cos(degrees * std::numbers::pi / 180);
+  if (quarters == std::floor(quarters)) {  // Quarter turns are exact.
+    const auto rest = static_cast<int>(std::fmod(std::fmod(quarters, 4) + 4, 4));
+    sine = rest == 1 ? 1 : rest == 3 ? -1 : 0;
+    cosine = rest == 0 ? 1 : rest == 2 ? -1 : 0;
+  }
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  for (Vec3d& column : turn_) {
+    const double a = column[u], b = column[v];
+    column[u] = cosine * a - sine * b;
+    column[v] = sine * a + cosine * b;
+  }
+}
+
+bool InputTransform::keeps_axes() const {
+  return std::all_of(turn_.begin(), turn_.end(), [](const Vec3d& column) {
+    return std::abs(column.x) + std::abs(column.y) + std::abs(column.z) == 1 &&
+           std::max({std::abs(column.x), std::abs(column.y), std::abs(column.z)}) == 1;
+  });
+}
+
+void move_mesh(MeshWithAppearance& source, const InputTransform& transform, Work work) {
+  if (transform.is_identity()) return;
+  Mesh& mesh = source.mesh;
+  Box3f bounds = Box3f::empty();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    work.poll_seldom(t);
+    for (const std::uint32_t vertex : mesh.triangles[t]) {
+      const Vec3f moved = transform.vertex(mesh.position(vertex), {});
+      if (!is_finite(moved))
+        throw Error("scaled and moved like this, vertices leave the range of float");
+      bounds.extend(moved);
+    }
+  }
+  const Vec3d origin =
+      float_origin({static_cast<Vec3d>(bounds.lo), static_cast<Vec3d>(bounds.hi)});
+  polled_for(mesh.vertices.size(), 4096, work, "move", [&](std::size_t i) {
+    mesh.vertices[i] = transform.vertex(mesh.position(i), origin);
+  });
+  mesh.origin = origin;
+  Appearance& appearance = source.appearance;
+  polled_for(appearance.normals.size(), 4096, work, "move", [&](std::size_t i) {
+    appearance.normals[i] =
+        static_cast<Vec3f>(transform.turned(static_cast<Vec3d>(appearance.normals[i])));
+  });
+  for (Material& material : appearance.materials) {
+    material.displacement_base *= static_cast<float>(transform.factor());
+    material.displacement_gain *= static_cast<float>(transform.factor());
+  }
+}
+
+}  // namespace voxdag

@@ -1,0 +1,27 @@
+#pragma once
+/// Joins the meshes of several files, and numbers the triangles by what they belong to.
+#include <span>
+#include <string>
+
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/mesh/appearance.hpp"
+
+namespace voxdag {
+
+/// Prepares a mesh for append_mesh(): gives it the material and the object `name` if it has none,
+/// and puts "name/" before the names of its objects. Reserves what that takes in `memory`. Throws
+/// OverMemory.
+void name_parts(MeshWithAppearance& source, const std::string& name, MemoryBudget* memory);
+
+/// Appends a mesh. Both have passed name_parts(), and both have an appearance or neither has.
+/// Corners without a normal, a texture coordinate or a colour get unset ones. memory_bytes() of
+/// both must be reserved in `memory`; those of the result are, afterwards. Throws Error if the
+/// result has too many vertices or triangles, and OverMemory.
+void append_mesh(MeshWithAppearance& to, MeshWithAppearance from, MemoryBudget* memory);
+
+/// Returns the object of each of `triangles` triangles. The first run begins at triangle 0. Throws
+/// OverMemory.
+CountedVector<std::uint32_t> ids_of_runs(std::span<const ObjectRun> runs, std::uint64_t triangles,
+                                         MemoryBudget* memory);
+
+}  // namespace voxdag
