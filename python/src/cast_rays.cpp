@@ -14,10 +14,10 @@ namespace voxdag::python {
 namespace {
 
 /// Returns the rays of two arrays of shape (N, 3), or of one row and N.
-std::vector<Ray> rays_of(const Array<float>& origins, const Array<float>& directions, float t_min,
+std::vector<Ray> rays_of(const py::array& origins, const py::array& directions, float t_min,
                          float t_max) {
-  const std::vector<Vec3f> from = rows_of(origins, "origins");
-  const std::vector<Vec3f> along = rows_of(directions, "directions");
+  const std::vector<Vec3f> from = rows_of<float>(origins, "origins");
+  const std::vector<Vec3f> along = rows_of<float>(directions, "directions");
   const std::size_t count = std::max(from.size(), along.size());
   if ((from.size() != count && from.size() != 1) || (along.size() != count && along.size() != 1))
     throw py::value_error("origins and directions must have as many rows as each other, or one");
@@ -35,7 +35,7 @@ std::vector<Hit> cast_all(const Dag& dag, const std::vector<Ray>& rays) {
   });
 }
 
-py::dict cast(const Dag& dag, const Array<float>& origins, const Array<float>& directions,
+py::dict cast(const Dag& dag, const py::array& origins, const py::array& directions,
               float t_min, float t_max) {
   const std::vector<Hit> hits = cast_all(dag, rays_of(origins, directions, t_min, t_max));
   std::vector<float> t(hits.size());
@@ -59,9 +59,9 @@ py::dict cast(const Dag& dag, const Array<float>& origins, const Array<float>& d
   return result;
 }
 
-py::array_t<bool> occluded(const Dag& dag, const Array<float>& origins,
-                           const Array<float>& targets) {
-  const std::vector<Vec3f> from = rows_of(origins, "origins"), to = rows_of(targets, "targets");
+py::array_t<bool> occluded(const Dag& dag, const py::array& origins, const py::array& targets) {
+  const std::vector<Vec3f> from = rows_of<float>(origins, "origins"),
+                           to = rows_of<float>(targets, "targets");
   if (from.size() != to.size() && from.size() != 1 && to.size() != 1)
     throw py::value_error("origins and targets must have as many rows as each other, or one");
   std::vector<Ray> rays(std::max(from.size(), to.size()));

@@ -138,8 +138,8 @@ void add_build_command(const Command& program, Session& session) {
       "material's colour.");
   command
       .text("mesh", session.subject, "MESH",
-            "The mesh: OBJ, PLY, STL, OFF, glTF/GLB, or another format if voxdag was built with "
-            "assimp")
+            "The mesh: OBJ, PLY, STL, OFF, glTF/GLB, 3MF, COLLADA, or another format if voxdag was "
+            "built with assimp; also compressed (.gz, .zst). -: standard input")
       .required();
   command.text("-o,--output", arguments->output, "FILE", "The file to write").required();
   const Option as =

@@ -16,6 +16,7 @@ namespace voxdag::cli {
 struct MeshAccess {
   bool allow_outside = false;       ///< As ReadOptions::allow_outside.
   bool any_importer = false;        ///< As ReadOptions::any_assimp_importer.
+  std::string format;               ///< As ReadOptions::format.
   MemoryBudget* memory = nullptr;   ///< The budget of ReadOptions::work.
   std::vector<OutputFile> outputs;  ///< Files that the command writes: no mesh may name them.
 
@@ -23,10 +24,11 @@ struct MeshAccess {
   void give_rights(ReadOptions& options) const {
     options.allow_outside = allow_outside;
     options.any_assimp_importer = any_importer;
+    options.format = format;
   }
 };
 
-/// Adds --allow-outside and --assimp. `mesh` is the option that names the mesh, if it is optional.
+/// Adds --format, --allow-outside and --assimp. `mesh` is the option that names the mesh, if it is optional.
 void add_mesh_access_options(const Command& command, MeshAccess& access,
                              const Option* mesh = nullptr);
 

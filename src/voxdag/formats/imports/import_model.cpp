@@ -2,7 +2,27 @@
 
 #include <utility>
 
+#include "voxdag/core/error.hpp"
+
 namespace voxdag {
+
+void check_grid_options(const VoxelSource& source, const ImportOptions& options) {
+  const bool sets_place = options.voxel_size || options.origin;
+  if (source.has_points()) {
+    if (!options.levels && !options.voxel_size && !source.grid())
+      throw Error("", "", "holds points, which need -r or --voxel-size");
+    if (options.levels && options.voxel_size)
+      throw Error("", "", "holds points; of -r and --voxel-size one is enough");
+    if (options.origin && (options.bounds || !options.voxel_size))
+      throw Error("", "", "holds points; --origin goes with --voxel-size, and not with --bounds");
+  } else if (options.bounds) {
+    throw Error("", "", "holds voxels; --bounds is for points");
+  } else if (sets_place && source.has_place()) {
+    throw Error("", "",
+                "says itself where its voxels lie: --voxel-size and --origin are for files that do "
+                "not");
+  }
+}
 
 ImportedModel import_model(const VoxelSource& source, const ImportOptions& options,
                            const std::string& name, Work work) {

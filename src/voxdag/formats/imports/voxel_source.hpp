@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "voxdag/core/grid.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/formats/imports/point_locator.hpp"
 
@@ -64,9 +65,13 @@ struct VoxelSourceOptions {
   /// other than 0 do.
   std::optional<double> threshold;
   bool use_placement = true;  ///< Reads the placement that voxdag export wrote beside the file.
+  std::string format = {};  ///< The ending that tells the format, "xyz"; empty: that of the name.
+  std::string grid = {};  ///< For .vdb files: the name of the grid to read; empty: see open_vdb().
+  Work work = {};           ///< Its budget counts what is unpacked.
 };
 
-/// Opens a file by the end of its name, or a folder of PNG files. Throws Error for formats that are
+/// Opens a file by the end of its name, or a folder of PNG files. Files that gzip or Zstandard have
+/// compressed and pipes are unpacked first (InputFile). Throws Error for formats that are
 /// not known, and for options that the format does not have.
 std::unique_ptr<VoxelSource> open_voxel_source(const std::filesystem::path& path,
                                                const VoxelSourceOptions& options = {});

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <new>
 
+#include "voxdag/formats/input_file.hpp"
 #include "voxdag/formats/readers/assimp/assimp_reader.hpp"
+#include "voxdag/formats/readers/collada/collada_reader.hpp"
 #include "voxdag/formats/readers/gltf/gltf_reader.hpp"
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 #include "voxdag/formats/readers/off/off_reader.hpp"
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 #include "voxdag/formats/readers/stl/stl_reader.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
+#include "voxdag/formats/readers/threemf/threemf_reader.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
 
 namespace voxdag {
@@ -45,6 +48,10 @@ MeshWithAppearance read_format(const MeshSource& source, const std::string& exte
       return finish(read_stl(source));
     case MeshFormat::kOff:
       return finish(read_off(source));
+    case MeshFormat::k3mf:
+      return read_3mf(source, parts);
+    case MeshFormat::kCollada:
+      return read_collada(source, parts);
     case MeshFormat::kOther:
       break;
   }
@@ -53,11 +60,14 @@ MeshWithAppearance read_format(const MeshSource& source, const std::string& exte
 
 MeshWithAppearance read(const std::filesystem::path& path, const ReadOptions& options,
                         ReadParts parts) {
-  const MappedFile file(path, MappedFile::Access::kSequential);
+  const InputFile input(path, options.work);
+  const MappedFile file(input.path(), MappedFile::Access::kSequential);
   const MeshSource source{file.text(), path.string(), path.parent_path(), &file, options};
   if (source.bytes.empty()) throw source.error("the file is empty");
+  const std::string extension =
+      options.format.empty() ? input.name().extension().string() : "." + options.format;
   try {
-    MeshWithAppearance result = read_format(source, path.extension().string(), parts);
+    MeshWithAppearance result = read_format(source, extension, parts);
     source.end_pass();
     if (options.work.memory != nullptr)
       options.work.memory->reserve(memory_bytes(result.mesh) + memory_bytes(result.appearance));
@@ -87,6 +97,8 @@ MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension
   if (ext == ".gltf" || ext == ".glb") return MeshFormat::kGltf;
   if (ext == ".stl" || is_exact_binary_stl(bytes) || is_ascii_stl(bytes)) return MeshFormat::kStl;
   if (ext == ".off" || is_off(bytes)) return MeshFormat::kOff;
+  if (ext == ".3mf" || (ext.empty() && is_zip(bytes))) return MeshFormat::k3mf;
+  if (ext == ".dae" || is_collada(bytes)) return MeshFormat::kCollada;
   return MeshFormat::kOther;
 }
 

@@ -2,6 +2,7 @@
 /// Options of mesh readers.
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "voxdag/core/io/mapped_arrays.hpp"
@@ -18,6 +19,9 @@ struct ReadOptions {
   bool allow_outside = false;
   /// Whether assimp may use all its importers. If false, it uses only those that survive fuzzing.
   bool any_assimp_importer = false;
+  /// The extension that tells the format, "obj"; empty: that of the file's name. Formats that the
+  /// content tells need none.
+  std::string format = {};
   /// If not null: receives the paths of all files that the mesh names (MTL, buffers, textures), so
   /// that the caller does not overwrite them. They need not exist.
   std::vector<std::filesystem::path>* named_files = nullptr;
