@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <stdexcept>
 
+#include "cli/output_files.hpp"
+
 namespace voxdag::cli {
 namespace {
 

@@ -31,6 +31,7 @@ ImportedModel import_model(const VoxelSource& source, const ImportOptions& optio
   metadata.grid = result.grid;
   metadata.source = {name, result.read, 0};
   metadata.build = {{"cover", "imported"}};
+  if (const std::optional<char> up = source.up()) metadata.build["up"] = std::string(1, *up);
   if (result.attributes.view().has_colors()) {
     metadata.attributes.resolution = result.grid.resolution();
     metadata.attributes.colors = {color_bound_of(source, options),

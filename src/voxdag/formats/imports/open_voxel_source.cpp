@@ -93,6 +93,7 @@ class UnpackedSource : public VoxelSource {
   std::optional<Grid> grid() const override { return source_->grid(); }
   bool has_place() const override { return source_->has_place(); }
   Vec3l first_voxel() const override { return source_->first_voxel(); }
+  std::optional<char> up() const override { return source_->up(); }
   std::vector<std::string> warnings() const override { return source_->warnings(); }
   void visit_all(const VisitBatch& visit) const override {
     with_file_name(given_.string(), [&] { source_->visit_all(visit); });

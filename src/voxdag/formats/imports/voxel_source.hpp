@@ -51,6 +51,8 @@ class VoxelSource {
   virtual std::optional<Grid> grid() const { return std::nullopt; }
   /// Returns whether the file says where its voxels lie, or how large they are.
   virtual bool has_place() const { return false; }
+  /// Returns the axis that points up if the file says it: 'y' or 'z'.
+  virtual std::optional<char> up() const { return std::nullopt; }
   /// Returns the coordinates that the file gives voxel (0, 0, 0) of visit_all().
   virtual Vec3l first_voxel() const { return {}; }
   /// Returns warnings for the user, one line each, without the name of the file.
