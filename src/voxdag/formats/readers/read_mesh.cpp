@@ -97,8 +97,8 @@ MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension
   if (ext == ".gltf" || ext == ".glb") return MeshFormat::kGltf;
   if (ext == ".stl" || is_exact_binary_stl(bytes) || is_ascii_stl(bytes)) return MeshFormat::kStl;
   if (ext == ".off" || is_off(bytes)) return MeshFormat::kOff;
-  if (ext == ".3mf" || (ext.empty() && is_zip(bytes))) return MeshFormat::k3mf;
-  if (ext == ".dae" || is_collada(bytes)) return MeshFormat::kCollada;
+  if (ext == ".3mf") return MeshFormat::k3mf;
+  if (ext == ".dae") return MeshFormat::kCollada;
   return MeshFormat::kOther;
 }
 

@@ -429,10 +429,6 @@ class ColladaReader {
 
 }  // namespace
 
-bool is_collada(std::string_view bytes) {
-  return without_byte_order_mark(bytes).substr(0, 4096).find("<COLLADA") != bytes.npos;
-}
-
 MeshWithAppearance read_collada(const MeshSource& source, ReadParts parts) {
   return ColladaReader(source).read(parts);
 }

@@ -15,7 +15,4 @@ namespace voxdag {
 /// element, OverMemory and Cancelled. Source: Khronos Group, COLLADA 1.4.1 and 1.5 Specifications.
 MeshWithAppearance read_collada(const MeshSource& source, ReadParts parts);
 
-/// Returns whether the bytes begin a COLLADA document.
-bool is_collada(std::string_view bytes);
-
 }  // namespace voxdag

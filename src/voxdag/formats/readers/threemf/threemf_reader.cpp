@@ -340,8 +340,6 @@ class ThreemfReader {
 
 }  // namespace
 
-bool is_zip(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"); }
-
 MeshWithAppearance read_3mf(const MeshSource& source, ReadParts parts) {
   return ThreemfReader(source).read(parts);
 }

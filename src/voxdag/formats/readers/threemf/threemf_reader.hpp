@@ -16,7 +16,4 @@ namespace voxdag {
 /// 1.3, Materials and Properties Extension 1.2, Production Extension 1.1.
 MeshWithAppearance read_3mf(const MeshSource& source, ReadParts parts);
 
-/// Returns whether the bytes are a ZIP archive that begins as 3MF files do. Others may be, too.
-bool is_zip(std::string_view bytes);
-
 }  // namespace voxdag
