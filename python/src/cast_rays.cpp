@@ -35,8 +35,8 @@ std::vector<Hit> cast_all(const Dag& dag, const std::vector<Ray>& rays) {
   });
 }
 
-py::dict cast(const Dag& dag, const py::array& origins, const py::array& directions,
-              float t_min, float t_max) {
+py::dict cast(const Dag& dag, const py::array& origins, const py::array& directions, float t_min,
+              float t_max) {
   const std::vector<Hit> hits = cast_all(dag, rays_of(origins, directions, t_min, t_max));
   std::vector<float> t(hits.size());
   std::vector<Vec3i> voxels(hits.size(), Vec3i{-1, -1, -1});

@@ -37,8 +37,9 @@ template <class Make>
 DagPointer run_edit(const Make& make) {
   const Edited edited = run_work(make);
   if (edited.drops)
-    warn(edited.dag->look().has_colors() ? "the result has no normals and materials of its source"
-                                       : "the result has no colours, normals and materials of its source");
+    warn(edited.dag->look().has_colors()
+             ? "the result has no normals and materials of its source"
+             : "the result has no colours, normals and materials of its source");
   return edited.dag;
 }
 
@@ -57,7 +58,8 @@ DagPointer colored_dag(VdagMetadata metadata, Work work, const Visit& visit) {
   auto [dag, attributes] = builder.finish(0);  // The colours are not coded with a loss again.
   metadata.attributes.resolution = metadata.grid.resolution();
   metadata.attributes.colors = {0, attributes.color_errors.squared};
-  return std::make_shared<Dag>(DagModel(std::move(dag), std::move(attributes), std::move(metadata)));
+  return std::make_shared<Dag>(
+      DagModel(std::move(dag), std::move(attributes), std::move(metadata)));
 }
 
 /// Returns the model of an edit without attributes.
@@ -75,12 +77,10 @@ Edited moved_dag(const Dag& source, Svdag dag, const std::string& edit, Work wor
   if (!look.has_colors()) return {plain, !look.is_empty()};
   LookReader reader(look);
   const int levels = source.grid().levels;
-  const DagPointer colored =
-      colored_dag(plain->model().metadata(), work, [&](const auto& add) {
-        for_each_voxel(plain->view(), whole_grid(levels), [&](Vec3i voxel) {
-          add(voxel, reader.read(source_of(voxel), levels).color);
-        });
-      });
+  const DagPointer colored = colored_dag(plain->model().metadata(), work, [&](const auto& add) {
+    for_each_voxel(plain->view(), whole_grid(levels),
+                   [&](Vec3i voxel) { add(voxel, reader.read(source_of(voxel), levels).color); });
+  });
   return {colored, look.has_normals() || look.has_materials()};
 }
 
@@ -107,21 +107,20 @@ Edited combined_dag(const Dag& a, const Dag& b, const DagPointer& plain, bool ne
       const Vec3d centre = grid.to_world(Vec3d(voxel) + Vec3d{0.5, 0.5, 0.5});
       const Vec3i in_a = containing_voxel(a.grid(), centre);
       const bool is_of_a = !needs_b || svdag_contains(a.view(), in_a, a.grid().levels);
-      add(voxel, is_of_a ? reader_a.read(in_a, a.grid().levels).color
-                         : reader_b.read(containing_voxel(b.grid(), centre), b.grid().levels).color);
+      add(voxel, is_of_a
+                     ? reader_a.read(in_a, a.grid().levels).color
+                     : reader_b.read(containing_voxel(b.grid(), centre), b.grid().levels).color);
     });
   });
   return {colored, has_normals || (needs_b && (look_b.has_normals() || look_b.has_materials()))};
 }
 
 DagPointer combined(const Dag& a, const Dag& b, SetOperation operation, const char* name) {
-  const bool needs_b =
-      operation == SetOperation::kUnion || operation == SetOperation::kSymmetric;
+  const bool needs_b = operation == SetOperation::kUnion || operation == SetOperation::kSymmetric;
   return run_edit([&](Work work) {
     const AlignedModels aligned(a.model(), b.model(), work);
-    const DagPointer plain =
-        plain_dag(a, aligned.result(operation), aligned.grid_of(operation),
-                  std::string(name) + " " + b.model().metadata().source.name);
+    const DagPointer plain = plain_dag(a, aligned.result(operation), aligned.grid_of(operation),
+                                       std::string(name) + " " + b.model().metadata().source.name);
     return combined_dag(a, b, plain, needs_b, work);
   });
 }
@@ -159,9 +158,9 @@ DagPointer cropped(const Dag& dag, const Window& window) {
 DagPointer shifted(const Dag& dag, const std::array<std::int32_t, 3>& offset, bool drop_outside) {
   const Vec3i by{offset[0], offset[1], offset[2]};
   return run_edit([&](Work work) {
-    const Edited moved = moved_dag(dag, shift(dag.view(), by, dag.grid().levels, work),
-                                   "shifted by " + text_of(by), work,
-                                   [by](Vec3i voxel) { return voxel - by; });
+    const Edited moved =
+        moved_dag(dag, shift(dag.view(), by, dag.grid().levels, work), "shifted by " + text_of(by),
+                  work, [by](Vec3i voxel) { return voxel - by; });
     const std::uint64_t lost =
         dag.model().metadata().counts.voxels - moved.dag->model().metadata().counts.voxels;
     if (lost != 0 && !drop_outside)

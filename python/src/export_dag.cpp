@@ -14,14 +14,15 @@ namespace {
 
 std::vector<std::filesystem::path> export_dag(const Dag& dag, const std::filesystem::path& path,
                                               const std::optional<Window>& window, bool colors,
-                                              bool faces,
-                                              const std::optional<std::string>& slices,
+                                              bool faces, const std::optional<std::string>& slices,
                                               const std::optional<std::string>& up, bool manifold,
                                               bool merge, bool texture) {
   ExportOptions options;
   std::vector<std::string> notes;
   options.notes = &notes;
-  options.faces = manifold ? FaceMesh::kManifold : merge ? FaceMesh::kFewest : FaceMesh::kWatertight;
+  options.faces = manifold ? FaceMesh::kManifold
+                  : merge  ? FaceMesh::kFewest
+                           : FaceMesh::kWatertight;
   options.texture = texture;
   if (up && (slices || (*up != "y" && *up != "z")))
     throw py::value_error("up must be 'y' or 'z', and is not for slices");
@@ -38,12 +39,13 @@ std::vector<std::filesystem::path> export_dag(const Dag& dag, const std::filesys
   if (up) content.up = (*up)[0];
   std::vector<std::filesystem::path> files =
       run_work([&](Work work) -> std::vector<std::filesystem::path> {
-    options.progress = [&](double, std::uint64_t) { work.poll(); };
-    const VoxelSet voxels(dag.view());
-    if (!slices) return export_scene(path, voxels, dag.model().metadata(), content, options, work);
-    export_slices(path, axis, voxels, dag.grid(), options);
-    return {path};
-  });
+        options.progress = [&](double, std::uint64_t) { work.poll(); };
+        const VoxelSet voxels(dag.view());
+        if (!slices)
+          return export_scene(path, voxels, dag.model().metadata(), content, options, work);
+        export_slices(path, axis, voxels, dag.grid(), options);
+        return {path};
+      });
   for (const std::string& note : notes) warn(note);
   return files;
 }
@@ -51,18 +53,19 @@ std::vector<std::filesystem::path> export_dag(const Dag& dag, const std::filesys
 }  // namespace
 
 void add_exports(DagClass& dag) {
-  dag.def("export", &export_dag, py::arg("path"), py::kw_only(), py::arg("window") = py::none(),
-          py::arg("colors") = true, py::arg("faces") = false, py::arg("slices") = py::none(),
-          py::arg("up") = py::none(), py::arg("manifold") = false, py::arg("merge") = false,
-          py::arg("texture") = false,
-          "Write the voxels for other programs: outer faces as .glb, .obj, .stl; voxels as .vox, "
-          ".binvox, .schem, .voxel.json, .npy, .raw, .spc.npy, .vdb, .nvdb; points as .ply, with "
-          "faces=True outer faces. up: 'y' or 'z', the axis that points up in the file; default: the "
-          "custom of the format (y for .glb, z for .vox and .stl) if the source's is known. .glb and "
-          ".obj: merge=True writes the fewest triangles, whose corners can lie inside edges of "
-          "others; texture=True writes colours as a texture. manifold=True (also .stl): each edge "
-          "has two triangles. slices='z' writes a folder of PNG files, one for each layer. "
-          "docs/export.md has the formats. Returns the files.");
+  dag.def(
+      "export", &export_dag, py::arg("path"), py::kw_only(), py::arg("window") = py::none(),
+      py::arg("colors") = true, py::arg("faces") = false, py::arg("slices") = py::none(),
+      py::arg("up") = py::none(), py::arg("manifold") = false, py::arg("merge") = false,
+      py::arg("texture") = false,
+      "Write the voxels for other programs: outer faces as .glb, .obj, .stl; voxels as .vox, "
+      ".binvox, .schem, .voxel.json, .npy, .raw, .spc.npy, .vdb, .nvdb; points as .ply, with "
+      "faces=True outer faces. up: 'y' or 'z', the axis that points up in the file; default: the "
+      "custom of the format (y for .glb, z for .vox and .stl) if the source's is known. .glb and "
+      ".obj: merge=True writes the fewest triangles, whose corners can lie inside edges of "
+      "others; texture=True writes colours as a texture. manifold=True (also .stl): each edge "
+      "has two triangles. slices='z' writes a folder of PNG files, one for each layer. "
+      "docs/export.md has the formats. Returns the files.");
 }
 
 }  // namespace voxdag::python

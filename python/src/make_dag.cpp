@@ -294,13 +294,13 @@ void add_makers(py::module_& module) {
   module.def("from_points", &from_points, py::arg("points"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
              py::arg("colors") = none);
-  module.def("from_coords", &from_coords, py::arg("coords"), py::kw_only(),
-             py::arg("resolution") = none, py::arg("pitch") = none, py::arg("origin") = none,
-             py::arg("colors") = none,
-             "The DAG of voxels (N, 3), whole numbers. resolution: voxels per side of the grid, a "
-             "power of two; default: the least that holds them. pitch: side of a voxel (default 1); "
-             "origin: lower corner of voxel (0, 0, 0), world units. colors: (N, 3), sRGB: uint8, "
-             "uint16, or real numbers from 0 to 1.");
+  module.def(
+      "from_coords", &from_coords, py::arg("coords"), py::kw_only(), py::arg("resolution") = none,
+      py::arg("pitch") = none, py::arg("origin") = none, py::arg("colors") = none,
+      "The DAG of voxels (N, 3), whole numbers. resolution: voxels per side of the grid, a "
+      "power of two; default: the least that holds them. pitch: side of a voxel (default 1); "
+      "origin: lower corner of voxel (0, 0, 0), world units. colors: (N, 3), sRGB: uint8, "
+      "uint16, or real numbers from 0 to 1.");
   module.def("from_dense", &from_dense, py::arg("dense"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("origin") = none,
              "The DAG of the voxels [x, y, z] that are True, or not 0 in whole numbers. "

@@ -43,10 +43,9 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
   options.folder = std::filesystem::path(arguments.output).parent_path();
   if (options.folder.empty()) options.folder = ".";
   return with_file_name(session.subject, [&] {
-    const std::unique_ptr<VoxelSource> source =
-        open_voxel_source(session.subject, {arguments.threshold,
-                                            !options.voxel_size && !options.origin,
-                                            arguments.format, arguments.grid, work});
+    const std::unique_ptr<VoxelSource> source = open_voxel_source(
+        session.subject, {arguments.threshold, !options.voxel_size && !options.origin,
+                          arguments.format, arguments.grid, work});
     print_warnings(warnings_of(*source, session.subject), session);
     check_grid_options(*source, options);
     return import_model(*source, options,
@@ -113,7 +112,8 @@ void add_import_command(const Command& program, Session& session) {
           "file", session.subject, "FILE",
           "Points: .ply, .las, .pcd, .npy of N x 3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. "
           "Voxels: .vox, .binvox, or .npy of N x 3 integers. Volumes: .npy of X x Y x Z, .nrrd, "
-          ".nhdr, .nii, .vdb, or a folder of .png slices. Each of them may also be compressed (.gz, "
+          ".nhdr, .nii, .vdb, or a folder of .png slices. Each of them may also be compressed "
+          "(.gz, "
           ".zst). -: standard input")
       .required();
   command.text("-o,--output", arguments->output, "OUT", "The .vdag file to write").required();

@@ -28,7 +28,8 @@ struct MeshAccess {
   }
 };
 
-/// Adds --format, --allow-outside and --assimp. `mesh` is the option that names the mesh, if it is optional.
+/// Adds --format, --allow-outside and --assimp. `mesh` is the option that names the mesh, if it is
+/// optional.
 void add_mesh_access_options(const Command& command, MeshAccess& access,
                              const Option* mesh = nullptr);
 

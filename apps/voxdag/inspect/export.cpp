@@ -33,7 +33,9 @@ struct ExportArguments {
   std::string name() const { return content.format.empty() ? output : "out." + content.format; }
   bool is_vdb() const { return !slices && (name().ends_with(".vdb") || name().ends_with(".nvdb")); }
   bool is_stl() const { return !slices && name().ends_with(".stl"); }
-  bool is_merged() const { return !slices && (name().ends_with(".glb") || name().ends_with(".obj")); }
+  bool is_merged() const {
+    return !slices && (name().ends_with(".glb") || name().ends_with(".obj"));
+  }
   bool is_page() const { return !slices && is_page_output(output); }
   bool carries_colors() const {
     return slices || export_has_colors(name(), options.window.has_value());
@@ -44,11 +46,10 @@ struct ExportArguments {
 void check_extension(const ExportArguments& arguments) {
   const std::string name = arguments.name();
   if (!can_export_to(name))
-    throw Error(
-        arguments.output, "",
-        fmt::format("cannot export to '{}': the extension must be {}, or .html; a folder "
-                    "ends in /. --format EXT is for outputs without an extension",
-                    std::filesystem::path(name).extension().string(), export_extensions()));
+    throw Error(arguments.output, "",
+                fmt::format("cannot export to '{}': the extension must be {}, or .html; a folder "
+                            "ends in /. --format EXT is for outputs without an extension",
+                            std::filesystem::path(name).extension().string(), export_extensions()));
 }
 
 /// Returns the mesh of faces that the options ask for: STL files are for printing, which needs a

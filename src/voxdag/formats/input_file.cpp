@@ -118,7 +118,7 @@ void unpack_gzip(const fs::path& given, std::string_view bytes, MemoryFile& to) 
 
 void unpack_zstd(const fs::path& given, std::string_view bytes, MemoryFile& to) {
   const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(ZSTD_createDStream(),
-                                                                         &ZSTD_freeDStream);
+                                                                          &ZSTD_freeDStream);
   if (!stream) throw std::bad_alloc();
   std::vector<std::byte> part(kPartBytes);
   ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};

@@ -8,11 +8,11 @@
 #include <sstream>
 
 #include "colored_scene.hpp"
+#include "read_back.hpp"
 #include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/core/vec2.hpp"
-#include "read_back.hpp"
 #include "voxdag/formats/exports/faces/manifold_faces.hpp"
 #include "voxdag/formats/exports/faces/rectangles.hpp"
 #include "voxdag/image/decode.hpp"
@@ -279,8 +279,9 @@ TEST(ExportStl, AFarGridHasALocalOriginAndTheOffsetIsSaid) {
       EXPECT_EQ(far[i][c] + Vec3f(0.75f, 0.25f, 1.5f), near[i][c]);
   // Voxels that are too small for floats are refused.
   scene.grid.voxel_size = 1e-300;
-  EXPECT_NE(error_of([&] { export_stl(dir / "small.stl", scene.view(), scene.grid); })
-                .find("cannot hold voxels of this size"),
+  EXPECT_NE(error_of([&] {
+              export_stl(dir / "small.stl", scene.view(), scene.grid);
+            }).find("cannot hold voxels of this size"),
             std::string::npos);
 }
 
@@ -320,7 +321,8 @@ void expect_one_fan_each(const Triangles3& triangles) {
 double volume_of(const Triangles3& triangles) {
   double volume = 0;
   for (const auto& [a, b, c] : triangles)
-    volume += dot(Vec3d{a[0], a[1], a[2]}, cross(Vec3d{b[0], b[1], b[2]}, Vec3d{c[0], c[1], c[2]})) / 6;
+    volume +=
+        dot(Vec3d{a[0], a[1], a[2]}, cross(Vec3d{b[0], b[1], b[2]}, Vec3d{c[0], c[1], c[2]})) / 6;
   return volume;
 }
 
@@ -337,7 +339,8 @@ Triangles3 triangles_of(const VoxelSet& voxels, const Box3i& window, FaceMesh fa
   };
   FacePolygon polygon;
   if (faces == FaceMesh::kManifold)
-    for_each_manifold_face(voxels, window, nullptr, [](std::uint64_t) {}, add);
+    for_each_manifold_face(
+        voxels, window, nullptr, [](std::uint64_t) {}, add);
   else
     for_each_rectangle(voxels, window, nullptr, true, nullptr, [&](const FaceRectangle& r) {
       set_cut_rectangle(r, polygon);
@@ -402,7 +405,8 @@ TEST(FaceMeshes, ATextureHasTheColorsOfTheVoxels) {
                      });
   const DecodedImage image = read_image(dir / "v.png");
   const auto color_at = [&](double u, double v) {  // v points down.
-    const auto rgba = image.pixel(static_cast<int>(u * image.width()), static_cast<int>(v * image.height()));
+    const auto rgba =
+        image.pixel(static_cast<int>(u * image.width()), static_cast<int>(v * image.height()));
     return std::array<int, 3>{rgba[0] / 257, rgba[1] / 257, rgba[2] / 257};
   };
   const Glb glb(read_text(dir / "v.glb"));
@@ -439,7 +443,7 @@ TEST(FaceMeshes, ATextureHasTheColorsOfTheVoxels) {
     } else if (kind == "f") {
       std::array<Vec3d, 3> p;
       std::size_t corner = 0, uv = 0;
-      for (char slash = 0; Vec3d& q : p) {
+      for (char slash = 0; Vec3d & q : p) {
         words >> corner >> slash >> uv;
         q = places.at(corner - 1);
       }

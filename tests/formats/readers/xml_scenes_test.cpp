@@ -34,7 +34,8 @@ std::string model_3mf(const std::string& resources, const std::string& items,
   return "<?xml version='1.0'?><model " + attributes +
          " xmlns='http://schemas.microsoft.com/3dmanufacturing/core/2015/02' "
          "xmlns:m='http://schemas.microsoft.com/3dmanufacturing/material/2015/02' xmlns:p='p'>"
-         "<resources>" + resources + "</resources><build>" + items + "</build></model>";
+         "<resources>" +
+         resources + "</resources><build>" + items + "</build></model>";
 }
 
 class Threemf : public testing::Test {
@@ -55,10 +56,13 @@ class Threemf : public testing::Test {
 
 TEST_F(Threemf, ItemsAndComponentsAreTransformed) {
   const Mesh mesh =
-      read(model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object><object id='2'>"
-                     "<components><component objectid='1' transform='0 1 0 -1 0 0 0 0 1 10 0 0'/>"
-                     "</components></object>",
-                     "<item objectid='2' transform='1 0 0 0 1 0 0 0 1 0 0 5'/>")).mesh;
+      read(model_3mf(
+               "<object id='1'>" + kMesh3mf +
+                   "/></triangles></mesh></object><object id='2'>"
+                   "<components><component objectid='1' transform='0 1 0 -1 0 0 0 0 1 10 0 0'/>"
+                   "</components></object>",
+               "<item objectid='2' transform='1 0 0 0 1 0 0 0 1 0 0 5'/>"))
+          .mesh;
   ASSERT_EQ(mesh.vertices.size(), 3u);
   EXPECT_EQ(mesh.vertices[0], (Vec3f{8, 1, 8}));
   EXPECT_EQ(mesh.vertices[1], (Vec3f{8, 2, 8}));
@@ -66,10 +70,13 @@ TEST_F(Threemf, ItemsAndComponentsAreTransformed) {
 }
 
 TEST_F(Threemf, UnitsBecomeMillimetres) {
-  for (const auto& [unit, size] : {std::pair{"inch", 25.4f}, {"micron", 0.001f}, {"meter", 1000.f}}) {
-    const Mesh mesh = read(model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>",
-                                     "<item objectid='1' transform='1 0 0 0 1 0 0 0 1 1 0 0'/>",
-                                     std::string("unit='") + unit + "'")).mesh;
+  for (const auto& [unit, size] :
+       {std::pair{"inch", 25.4f}, {"micron", 0.001f}, {"meter", 1000.f}}) {
+    const Mesh mesh =
+        read(model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>",
+                       "<item objectid='1' transform='1 0 0 0 1 0 0 0 1 1 0 0'/>",
+                       std::string("unit='") + unit + "'"))
+            .mesh;
     EXPECT_FLOAT_EQ(mesh.vertices[0].x, 2 * size);
     EXPECT_FLOAT_EQ(mesh.vertices[2].y, 4 * size);
   }
@@ -79,7 +86,8 @@ TEST_F(Threemf, UnitsBecomeMillimetres) {
 
 TEST_F(Threemf, MirroredCopiesAreTurned) {
   const Mesh mesh = read(model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>",
-                                   "<item objectid='1' transform='-1 0 0 0 1 0 0 0 1 0 0 0'/>")).mesh;
+                                   "<item objectid='1' transform='-1 0 0 0 1 0 0 0 1 0 0 0'/>"))
+                        .mesh;
   EXPECT_EQ(mesh.triangles[0], (Triangle{0, 2, 1}));
 }
 
@@ -89,15 +97,13 @@ TEST_F(Threemf, ColorsComeFromMaterialsAndGroups) {
       "displaycolor='#0000FF80'/></basematerials><m:colorgroup id='6'><m:color color='#008000FF'/>"
       "<m:color color='#FFFFFF'/></m:colorgroup>";
   const auto color_of = [&](const std::string& object, const std::string& triangle) {
-    const MeshWithAppearance read_one = read(
-        model_3mf(groups + "<object id='1' " + object + ">" + kMesh3mf + triangle +
-                      "/></triangles></mesh></object>",
-                  "<item objectid='1'/>"));
-    const Material& material =
-        read_one.appearance.materials[read_one.mesh.triangle_materials[0]];
+    const MeshWithAppearance read_one =
+        read(model_3mf(groups + "<object id='1' " + object + ">" + kMesh3mf + triangle +
+                           "/></triangles></mesh></object>",
+                       "<item objectid='1'/>"));
+    const Material& material = read_one.appearance.materials[read_one.mesh.triangle_materials[0]];
     Vec3f color = material.base_color;
-    if (!read_one.appearance.colors.empty())
-      color = color * read_one.appearance.colors[1].color();
+    if (!read_one.appearance.colors.empty()) color = color * read_one.appearance.colors[1].color();
     return std::array{linear_to_srgb8(color.x), linear_to_srgb8(color.y), linear_to_srgb8(color.z)};
   };
   using Rgb = std::array<std::uint8_t, 3>;
@@ -109,15 +115,16 @@ TEST_F(Threemf, ColorsComeFromMaterialsAndGroups) {
 }
 
 TEST_F(Threemf, ModelsOfOtherPartsAreRead) {
-  const Mesh mesh = read_mesh(write(
-      {{"_rels/.rels", "<Relationships><Relationship Target='/3D/root.model' "
-                       "Type='http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel'/>"
-                       "</Relationships>"},
-       {"3D/root.model", model_3mf("<object id='1'><components><component objectid='1' "
-                                   "p:path='/3D/other.model'/></components></object>",
-                                   "<item objectid='1'/>")},
-       {"3D/other.model",
-        model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>", "")}}));
+  const Mesh mesh = read_mesh(
+      write({{"_rels/.rels",
+              "<Relationships><Relationship Target='/3D/root.model' "
+              "Type='http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel'/>"
+              "</Relationships>"},
+             {"3D/root.model", model_3mf("<object id='1'><components><component objectid='1' "
+                                         "p:path='/3D/other.model'/></components></object>",
+                                         "<item objectid='1'/>")},
+             {"3D/other.model",
+              model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>", "")}}));
   EXPECT_EQ(mesh.triangles.size(), 1u);
 }
 
@@ -126,10 +133,12 @@ TEST_F(Threemf, RefusesWhatIsDamagedOrWouldGrow) {
     return text.find(part) != std::string::npos;
   };
   const std::string file = (dir_ / "a.3mf").string();
-  EXPECT_TRUE(has(refusal(model_3mf("<object id='1'>" + kMesh3mf + " /></triangles></mesh>"
-                                    "<components><component objectid='1'/></components></object>",
-                                    "<item objectid='1'/>")),
-                  "components are nested more than 64 deep"));
+  EXPECT_TRUE(
+      has(refusal(model_3mf("<object id='1'>" + kMesh3mf +
+                                " /></triangles></mesh>"
+                                "<components><component objectid='1'/></components></object>",
+                            "<item objectid='1'/>")),
+          "components are nested more than 64 deep"));
   EXPECT_TRUE(has(refusal("<!DOCTYPE model [<!ENTITY a 'b'>]><model/>"),
                   (file + ": 3D/3dmodel.model, line 1: has a document type").c_str()));
   EXPECT_TRUE(has(refusal(model_3mf("<object id='1'>", "")), "is not well-formed XML"));
@@ -141,8 +150,10 @@ TEST_F(Threemf, RefusesWhatIsDamagedOrWouldGrow) {
   std::string deep;
   for (int i = 0; i < 300; ++i) deep += "<a>";
   EXPECT_TRUE(has(refusal(deep), "nested more than 200 deep"));
-  EXPECT_TRUE(has(refusal(model_3mf("<object id='1'>" + kMesh3mf + " /><triangle v1='0' v2='1' "
-                                    "v3='3'/></triangles></mesh></object>", "<item objectid='1'/>")),
+  EXPECT_TRUE(has(refusal(model_3mf("<object id='1'>" + kMesh3mf +
+                                        " /><triangle v1='0' v2='1' "
+                                        "v3='3'/></triangles></mesh></object>",
+                                    "<item objectid='1'/>")),
                   "vertex '3' is no whole number from 0 to 3 (excluded)"));
   // Objects that are doubled in each of 40 steps.
   std::string doubled = "<object id='0'>" + kMesh3mf + "/></triangles></mesh></object>";
@@ -160,9 +171,9 @@ TEST_F(Threemf, RefusesWhatIsDamagedOrWouldGrow) {
 }
 
 TEST_F(Threemf, NoPrefixIsRead) {
-  write({{"3D/3dmodel.model", model_3mf("<object id='1'>" + kMesh3mf +
-                                            "/></triangles></mesh></object>",
-                                        "<item objectid='1'/>")}});
+  write({{"3D/3dmodel.model",
+          model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>",
+                    "<item objectid='1'/>")}});
   const std::string good = read_text(dir_ / "a.3mf");
   for (std::size_t size = 0; size < good.size(); ++size) {
     std::filesystem::remove(dir_ / "b.3mf");
@@ -177,7 +188,8 @@ std::string collada(const std::string& primitives, const std::string& node,
          "<geometry id='g'><mesh><source id='p'><float_array id='f' count='12'>0 0 0 100 0 0\n"
          "100 100 0 0 100 0</float_array><technique_common><accessor source='#f' count='4' "
          "stride='3'/></technique_common></source><vertices id='v'><input semantic='POSITION' "
-         "source='#p'/></vertices>" + primitives + "</mesh></geometry></library_geometries>" + more +
+         "source='#p'/></vertices>" +
+         primitives + "</mesh></geometry></library_geometries>" + more +
          "<library_visual_scenes><visual_scene id='s'>" + node +
          "</visual_scene></library_visual_scenes><scene><instance_visual_scene url='#s'/></scene>"
          "</COLLADA>";
@@ -201,7 +213,8 @@ TEST_F(Collada, EveryPrimitiveMakesTriangles) {
        {std::pair{"<triangles count='1'>" + kInput + "<p>0 1 2</p></triangles>", 1u},
         {"<polylist count='2' material='m'>" + kInput +
              "<input semantic='NORMAL' source='#n' offset='1'/><vcount>3 4</vcount><p>0 0 1 0 2 0 "
-             "0 0 1 0 2 0 3 0</p></polylist>", 3u},
+             "0 0 1 0 2 0 3 0</p></polylist>",
+         3u},
         {"<polygons count='1'>" + kInput + "<p>0 1 2 3</p></polygons>", 2u},
         {"<tristrips count='1'>" + kInput + "<p>0 1 3 2</p></tristrips>", 2u},
         {"<trifans count='1'>" + kInput + "<p>0 1 2 3</p></trifans>", 2u}}) {
@@ -221,7 +234,8 @@ TEST_F(Collada, NodesAreTransformedInOrderAndTheAxesStay) {
       read(collada(triangle,
                    "<node><translate>100 0 0</translate><rotate>0 0 1 90</rotate><node><scale>2 1 "
                    "-1</scale><matrix>1 0 0 0 0 1 0 0 0 0 1 300 0 0 0 1</matrix><instance_geometry "
-                   "url='#g'/></node></node>")).mesh;
+                   "url='#g'/></node></node>"))
+          .mesh;
   const Vec3f corner = mesh.vertices[2];
   EXPECT_NEAR(corner.x, 0, 1e-6);
   EXPECT_NEAR(corner.y, 2, 1e-6);
@@ -252,9 +266,9 @@ TEST_F(Collada, RefusesWhatIsDamagedOrWouldGrow) {
   const auto has = [](const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
   };
-  EXPECT_TRUE(has(refusal(collada("<triangles count='1'>" + kInput + "<p>0 1 4</p></triangles>",
-                                  kNode)),
-                  "vertex '4' is no whole number from 0 to 4 (excluded)"));
+  EXPECT_TRUE(
+      has(refusal(collada("<triangles count='1'>" + kInput + "<p>0 1 4</p></triangles>", kNode)),
+          "vertex '4' is no whole number from 0 to 4 (excluded)"));
   EXPECT_TRUE(has(refusal(collada(triangle, "<node><instance_geometry url='#h'/></node>")),
                   "there is no <geometry> of that id"));
   EXPECT_TRUE(has(refusal(collada(triangle, "<node id='n'><instance_node url='#n'/></node>")),

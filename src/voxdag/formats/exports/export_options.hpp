@@ -46,7 +46,8 @@ struct ExportOptions {
   /// How faces are written to .glb, .obj and .stl. STL files are watertight at least.
   FaceMesh faces = FaceMesh::kFewest;
   /// Writes colours to .glb and .obj as a texture with a pixel for each colour, for programs that
-  /// show no colours of corners. OBJ files get PATH.mtl and PATH.png, with their extension replaced.
+  /// show no colours of corners. OBJ files get PATH.mtl and PATH.png, with their extension
+  /// replaced.
   bool texture = false;
   /// If not null: receives lines for the user about the output.
   std::vector<std::string>* notes = nullptr;

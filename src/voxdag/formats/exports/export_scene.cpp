@@ -53,8 +53,8 @@ std::optional<char> up_of(const SceneMetadata& metadata) {
 std::vector<std::filesystem::path> export_scene(const std::filesystem::path& path,
                                                 const VoxelSet& voxels,
                                                 const SceneMetadata& metadata,
-                                                const ExportContent& content,
-                                                ExportOptions options, Work work) {
+                                                const ExportContent& content, ExportOptions options,
+                                                Work work) {
   const Grid& grid = metadata.grid;
   const std::optional<char> from = up_of(metadata), custom = custom_up(path, content);
   const std::optional<char> to = content.up ? content.up : from ? custom : std::nullopt;

@@ -19,7 +19,7 @@ std::optional<char> up_of(const SceneMetadata& metadata);
 std::vector<std::filesystem::path> export_scene(const std::filesystem::path& path,
                                                 const VoxelSet& voxels,
                                                 const SceneMetadata& metadata,
-                                                const ExportContent& content,
-                                                ExportOptions options, Work work = {});
+                                                const ExportContent& content, ExportOptions options,
+                                                Work work = {});
 
 }  // namespace voxdag

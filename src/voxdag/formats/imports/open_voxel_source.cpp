@@ -82,9 +82,10 @@ std::unique_ptr<VoxelSource> open_by_name(const Path& path, std::string name,
 class UnpackedSource : public VoxelSource {
  public:
   UnpackedSource(Path given, InputFile input, const std::string& name, const Options& options)
-      : given_(std::move(given)), input_(std::move(input)), source_(with_file_name(given_.string(), [&] {
-          return open_by_name(input_.path(), name, options);
-        })) {}
+      : given_(std::move(given)),
+        input_(std::move(input)),
+        source_(with_file_name(given_.string(),
+                               [&] { return open_by_name(input_.path(), name, options); })) {}
 
   bool has_points() const override { return source_->has_points(); }
   bool has_colors() const override { return source_->has_colors(); }

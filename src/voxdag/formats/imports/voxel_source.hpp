@@ -67,9 +67,9 @@ struct VoxelSourceOptions {
   /// other than 0 do.
   std::optional<double> threshold;
   bool use_placement = true;  ///< Reads the placement that voxdag export wrote beside the file.
-  std::string format = {};  ///< The ending that tells the format, "xyz"; empty: that of the name.
+  std::string format = {};    ///< The ending that tells the format, "xyz"; empty: that of the name.
   std::string grid = {};  ///< For .vdb files: the name of the grid to read; empty: see open_vdb().
-  Work work = {};           ///< Its budget counts what is unpacked.
+  Work work = {};         ///< Its budget counts what is unpacked.
 };
 
 /// Opens a file by the end of its name, or a folder of PNG files. Files that gzip or Zstandard have

@@ -10,8 +10,9 @@ namespace voxdag {
 
 /// Reads a mesh. Files that gzip or Zstandard have compressed, and pipes, are unpacked to memory
 /// first (InputFile). The content decides the format if it is certain (PLY, glTF, STL, OFF),
-/// else the extension does. OBJ, PLY, STL, glTF, OFF, 3MF and COLLADA have readers here; assimp reads other formats if the
-/// library was built with it. docs/meshes.md lists the features of each format that are read.
+/// else the extension does. OBJ, PLY, STL, glTF, OFF, 3MF and COLLADA have readers here; assimp
+/// reads other formats if the library was built with it. docs/meshes.md lists the features of each
+/// format that are read.
 ///
 /// Every index of the mesh is in range, every vertex that a triangle uses is finite, and there is
 /// at least one triangle. The result depends on the file alone, not on the number of threads.

@@ -29,7 +29,8 @@ class ColorTexture {
     side_ = static_cast<std::uint32_t>(std::ceil(std::sqrt(count)));
   }
 
-  /// Returns the place of an added colour: the middle of its pixel. (0, 0) is the upper left corner.
+  /// Returns the place of an added colour: the middle of its pixel. (0, 0) is the upper left
+  /// corner.
   Vec2f uv(Value8 color) const {
     const std::uint32_t pixel = pixel_of(color);
     const auto middle = [&](std::uint32_t i) {

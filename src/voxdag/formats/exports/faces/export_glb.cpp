@@ -181,7 +181,8 @@ void export_glb(const std::filesystem::path& path, const VoxelSet& voxels, const
                 const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
   ExportedPolygons polygons(voxels, window, options, true);
-  GlbPlan plan{grid, window.lo, float_suffices(grid), polygons.has_colors(), polygons.measure(), {}};
+  GlbPlan plan{grid, window.lo, float_suffices(grid), polygons.has_colors(), polygons.measure(),
+               {}};
   if (polygons.has_texture() && plan.extent.triangles > 0)
     plan.texture = png_bytes(plan.extent.texture.image());
   const std::string document = plan.document();

@@ -37,7 +37,8 @@ void export_obj(const std::filesystem::path& path, const VoxelSet& voxels, const
   if (polygons.has_texture()) {
     texture = polygons.measure().texture;
     write_png(image, texture.image());
-    write_whole_file(material, "newmtl voxels\nKd 1 1 1\nmap_Kd " + image.filename().string() + "\n");
+    write_whole_file(material,
+                     "newmtl voxels\nKd 1 1 1\nmap_Kd " + image.filename().string() + "\n");
   }
   AtomicFile file(path);
   std::string text = "# made by voxdag\n# grid_origin";

@@ -62,7 +62,8 @@ void export_stl(const std::filesystem::path& path, const VoxelSet& voxels, const
   layout.offset = offset;
   write_placement(path, world, window, layout, options);
   if (options.notes == nullptr) return;
-  std::string note = "floats are too coarse for its place in the world: its coordinates need the offset";
+  std::string note =
+      "floats are too coarse for its place in the world: its coordinates need the offset";
   for (int axis = 0; axis < 3; ++axis) note.append(" ").append(shortest((*offset)[axis]));
   options.notes->push_back(path.string() + ": " + note + ", as " + path.filename().string() +
                            ".json says");

@@ -68,13 +68,12 @@ class ExportedPolygons {
     } else {
       FacePolygon polygon;
       const bool cut = merge_ && options_.faces == FaceMesh::kWatertight;
-      for_each_rectangle(voxels_, window_, colors_, merge_, progress,
-                         [&](const FaceRectangle& rectangle) {
-                           ++done;
-                           cut ? set_cut_rectangle(rectangle, polygon)
-                               : set_rectangle(rectangle, polygon);
-                           fn(polygon);
-                         });
+      for_each_rectangle(
+          voxels_, window_, colors_, merge_, progress, [&](const FaceRectangle& rectangle) {
+            ++done;
+            cut ? set_cut_rectangle(rectangle, polygon) : set_rectangle(rectangle, polygon);
+            fn(polygon);
+          });
     }
     done_ = end;
   }

@@ -24,13 +24,12 @@ void set_cut_rectangle(const FaceRectangle& rectangle, FacePolygon& polygon) {
   for (std::size_t side = 0; side < 4; ++side) {
     const std::uint32_t count = side % 2 == 0 ? width : height;
     const Vec3d from(ends[side]), step = (Vec3d(ends[(side + 1) % 4]) - from) * (1.0 / count);
-    for (std::uint32_t i = 0; i < count; ++i) polygon.corners.push_back(from + step * static_cast<double>(i));
+    for (std::uint32_t i = 0; i < count; ++i)
+      polygon.corners.push_back(from + step * static_cast<double>(i));
   }
   const auto low = [&](std::uint32_t x) { return x; };
   const auto high = [&](std::uint32_t x) { return 2 * width + height - x; };
-  const auto left = [&](std::uint32_t y) {
-    return y == 0 ? 0 : 2 * width + 2 * height - y;
-  };
+  const auto left = [&](std::uint32_t y) { return y == 0 ? 0 : 2 * width + 2 * height - y; };
   const auto right = [&](std::uint32_t y) { return width + y; };
   auto& triangles = polygon.triangles;
   triangles.clear();

@@ -74,9 +74,8 @@ class Neighbourhood {
       for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
           const Vec3i by{4 * x, 4 * y, 4 * z}, at = origin + by;
-          std::uint64_t mask = by == Vec3i{}
-                                   ? block
-                                   : voxels.leaf_block_at(at) & leaf_window_mask(at, window);
+          std::uint64_t mask =
+              by == Vec3i{} ? block : voxels.leaf_block_at(at) & leaf_window_mask(at, window);
           for (; mask != 0; mask &= mask - 1)
             set(by + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask))));
         }
@@ -115,8 +114,7 @@ void set_manifold_face(const std::array<CornerMoves, 256>& moves, const Neighbou
     const Vec3i corner = corners[i], next = corners[(i + 1) % 4];
     const Vec3i cell = v - corner + Vec3i{1, 1, 1};
     const int index = cell.x | cell.y << 1 | cell.z << 2;
-    polygon.corners.push_back(Vec3d(origin + corner) +
-                              moves[near.around(corner)][index][axis]);
+    polygon.corners.push_back(Vec3d(origin + corner) + moves[near.around(corner)][index][axis]);
     // The edge to the next corner has four faces if only the voxel across it is set.
     const Vec3d middle = (Vec3d(corner) + Vec3d(next)) * 0.5;
     const Vec3d inward = Vec3d(v) + Vec3d{0.5, 0.5, 0.5} - middle;  // Across the edge.
@@ -134,7 +132,8 @@ void set_manifold_face(const std::array<CornerMoves, 256>& moves, const Neighbou
   const auto count = static_cast<std::uint32_t>(polygon.corners.size());
   polygon.corners.push_back((Vec3d(square.lo) + Vec3d(square.hi)) * 0.5 + Vec3d(origin));
   polygon.triangles.clear();
-  for (std::uint32_t i = 0; i < count; ++i) polygon.triangles.push_back({count, i, (i + 1) % count});
+  for (std::uint32_t i = 0; i < count; ++i)
+    polygon.triangles.push_back({count, i, (i + 1) % count});
 }
 
 }  // namespace

@@ -99,7 +99,8 @@ class Vdb : public VoxelSource {
     for (auto name = file.beginName(); name != file.endName(); ++name) {
       if (!with_grid(*file.readGridMetadata(*name), [](const auto&) {})) continue;
       names += (count++ == 0 ? "" : ", ") + name_in_quotes(*name);
-      const bool is_better = wanted.empty() ? chosen.empty() || *name == "density" : *name == wanted;
+      const bool is_better =
+          wanted.empty() ? chosen.empty() || *name == "density" : *name == wanted;
       if (is_better) chosen = *name;
     }
     if (count == 0)
@@ -159,8 +160,8 @@ class Vdb : public VoxelSource {
   std::vector<std::string> warnings_;
 };
 
-VoxelSource* open_vdb_in_module(const std::filesystem::path& path,
-                                std::optional<double> threshold, const std::string& grid) {
+VoxelSource* open_vdb_in_module(const std::filesystem::path& path, std::optional<double> threshold,
+                                const std::string& grid) {
   try {
     return new Vdb(path, threshold, grid);
   } catch (const openvdb::Exception& error) {

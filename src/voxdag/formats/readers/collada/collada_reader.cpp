@@ -120,8 +120,8 @@ class ColladaReader {
  private:
   [[noreturn]] void fail(const XmlElement& element, const std::string& reason) const {
     const std::string_view id = element["id"];
-    throw Error(source_.name, "<" + printable(element.name) + ">" +
-                                  (id.empty() ? "" : " " + name_in_quotes(id)),
+    throw Error(source_.name,
+                "<" + printable(element.name) + ">" + (id.empty() ? "" : " " + name_in_quotes(id)),
                 reason);
   }
   /// Calls body() and returns its result. Errors without a file get this element as their place.
@@ -314,8 +314,8 @@ class ColladaReader {
       } else {
         for (std::size_t i = 2; i < all.size(); ++i)
           add_triangle(geometry, kind->second == kFans ? Triangle{all[0], all[i - 1], all[i]}
-                                 : i % 2 == 0 ? Triangle{all[i - 2], all[i - 1], all[i]}
-                                              : Triangle{all[i - 1], all[i - 2], all[i]});
+                                 : i % 2 == 0          ? Triangle{all[i - 2], all[i - 1], all[i]}
+                                                       : Triangle{all[i - 1], all[i - 2], all[i]});
       }
     }
   }
@@ -369,15 +369,14 @@ class ColladaReader {
     for (const XmlElement& binding : bound->children) {
       const auto symbol = symbols_.find(std::string(binding["symbol"]));
       if (symbol != symbols_.end() && binding.name == "instance_material")
-        materials[symbol->second] =
-            material_number(named(binding, binding["target"], "material"));
+        materials[symbol->second] = material_number(named(binding, binding["target"], "material"));
     }
     return materials;
   }
 
   std::uint32_t material_number(const XmlElement& element) {
-    const auto [number, is_new] = material_numbers_.try_emplace(
-        &element, static_cast<std::uint32_t>(materials_.size()));
+    const auto [number, is_new] =
+        material_numbers_.try_emplace(&element, static_cast<std::uint32_t>(materials_.size()));
     if (!is_new) return number->second;
     Material& material = materials_.emplace_back();
     const std::string_view name = element["name"];
@@ -397,8 +396,8 @@ class ColladaReader {
           std::array<double, 4> rgba;
           parse_numbers(color->text, rgba, "a colour");
           for (int c = 0; c < 3; ++c)
-            material.base_color[c] = srgb_to_linear(static_cast<float>(
-                std::clamp(rgba[static_cast<std::size_t>(c)], 0.0, 1.0)));
+            material.base_color[c] = srgb_to_linear(
+                static_cast<float>(std::clamp(rgba[static_cast<std::size_t>(c)], 0.0, 1.0)));
         });
       else
         left_out_.insert("textures are not read");
@@ -406,9 +405,10 @@ class ColladaReader {
     return number->second;
   }
 
-  using Ids = std::unordered_map<
-      std::string_view, const XmlElement*, std::hash<std::string_view>, std::equal_to<>,
-      CountedAllocator<std::pair<const std::string_view, const XmlElement*>>>;
+  using Ids =
+      std::unordered_map<std::string_view, const XmlElement*, std::hash<std::string_view>,
+                         std::equal_to<>,
+                         CountedAllocator<std::pair<const std::string_view, const XmlElement*>>>;
 
   const MeshSource& source_;
   XmlTree tree_;

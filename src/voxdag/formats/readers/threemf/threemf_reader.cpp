@@ -56,16 +56,16 @@ struct Archive3mf {
   std::map<ResourceId, Object3mf> objects;
   std::map<ResourceId, Group3mf> groups;
   std::vector<Reference3mf> build;
-  std::set<std::string> parts;      ///< The models that others name.
-  std::vector<std::string> unread;  ///< Those of them that are not read yet.
+  std::set<std::string> parts;         ///< The models that others name.
+  std::vector<std::string> unread;     ///< Those of them that are not read yet.
   std::vector<Material> materials{1};  ///< The first one is that of triangles without.
   std::set<std::string> left_out;      ///< Kinds of properties.
 };
 
 double millimetres_of(std::string_view unit) {
   constexpr std::pair<std::string_view, double> kUnits[] = {
-      {"", 1},          {"micron", 0.001}, {"millimeter", 1}, {"centimeter", 10},
-      {"inch", 25.4},   {"foot", 304.8},   {"meter", 1000}};
+      {"", 1},        {"micron", 0.001}, {"millimeter", 1}, {"centimeter", 10},
+      {"inch", 25.4}, {"foot", 304.8},   {"meter", 1000}};
   for (const auto& [name, size] : kUnits)
     if (name == unit) return size;
   throw Error("has the unknown unit " + in_quotes(unit));
@@ -76,8 +76,7 @@ GltfTransform item_transform_of(std::string_view text) {
   if (text.empty()) return transform;
   std::array<double, 12> m;
   parse_numbers(text, m, "transform");
-  for (std::size_t c = 0; c < 4; ++c)
-    transform.columns[c] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]};
+  for (std::size_t c = 0; c < 4; ++c) transform.columns[c] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]};
   return transform;
 }
 
@@ -291,9 +290,11 @@ class ThreemfReader {
       throw Error(source_.name, reference.object.first,
                   "has no object " + in_quotes(reference.object.second));
     if (depth > kMaxComponentDepth)
-      throw source_.error("components are nested more than " + std::to_string(kMaxComponentDepth) + " deep");
+      throw source_.error("components are nested more than " + std::to_string(kMaxComponentDepth) +
+                          " deep");
     if (++references_ > kMaxXmlInstances)
-      throw source_.error("the build has more than " + std::to_string(kMaxXmlInstances) + " objects");
+      throw source_.error("the build has more than " + std::to_string(kMaxXmlInstances) +
+                          " objects");
     const Object3mf& object = found->second;
     if (!object.triangles.empty()) {
       instances_.push_back({&object, reference.transform});

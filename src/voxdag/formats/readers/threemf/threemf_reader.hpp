@@ -11,9 +11,9 @@ namespace voxdag {
 /// are those of its corners. One warning says which kinds of properties are left out, textures
 /// among them. Triangles of mirrored copies are turned.
 ///
-/// Memory: the vertices and triangles of the archive's objects and those of the result. Throws Error
-/// with the part and its line, OverMemory and Cancelled. Sources: 3MF Consortium, Core Specification
-/// 1.3, Materials and Properties Extension 1.2, Production Extension 1.1.
+/// Memory: the vertices and triangles of the archive's objects and those of the result. Throws
+/// Error with the part and its line, OverMemory and Cancelled. Sources: 3MF Consortium, Core
+/// Specification 1.3, Materials and Properties Extension 1.2, Production Extension 1.1.
 MeshWithAppearance read_3mf(const MeshSource& source, ReadParts parts);
 
 }  // namespace voxdag

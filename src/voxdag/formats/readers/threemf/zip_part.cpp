@@ -61,8 +61,8 @@ bool read_zip_part(const MeshSource& source, std::string_view name,
   if (unzOpenCurrentFile(zip.get()) != UNZ_OK) fail();
   std::vector<char> part(std::size_t{1} << 18);
   int count = 0;
-  while ((count = unzReadCurrentFile(zip.get(), part.data(),
-                                     static_cast<unsigned>(part.size()))) > 0)
+  while ((count = unzReadCurrentFile(zip.get(), part.data(), static_cast<unsigned>(part.size()))) >
+         0)
     use({part.data(), static_cast<std::size_t>(count)});
   if (count < 0 || unzCloseCurrentFile(zip.get()) != UNZ_OK) fail();  // Closing checks the CRC.
   return true;

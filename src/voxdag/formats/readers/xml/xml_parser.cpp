@@ -45,9 +45,7 @@ struct XmlParser::Expat {
           });
         });
     XML_SetCharacterDataHandler(parser, [](void* user, const char* text, int size) {
-      guard(user, [&](XmlParser& p) {
-        p.handler_.text({text, static_cast<std::size_t>(size)});
-      });
+      guard(user, [&](XmlParser& p) { p.handler_.text({text, static_cast<std::size_t>(size)}); });
     });
     XML_SetStartDoctypeDeclHandler(
         parser, [](void* user, const char*, const char*, const char*, int) {

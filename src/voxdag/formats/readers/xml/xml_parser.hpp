@@ -40,9 +40,9 @@ class XmlHandler {
   virtual void text(std::string_view) {}
 };
 
-/// Parses a document that comes in parts. Refuses document types, so no entity of the document's own
-/// is ever expanded; elements that are nested more than 200 deep; and names and attributes of more
-/// than a mebibyte. So memory does not grow with the document.
+/// Parses a document that comes in parts. Refuses document types, so no entity of the document's
+/// own is ever expanded; elements that are nested more than 200 deep; and names and attributes of
+/// more than a mebibyte. So memory does not grow with the document.
 class XmlParser {
  public:
   /// `part` names the document in a file that holds several; may be empty.
