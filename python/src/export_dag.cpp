@@ -15,18 +15,20 @@ namespace {
 std::vector<std::filesystem::path> export_dag(const Dag& dag, const std::filesystem::path& path,
                                               const std::optional<Window>& window, bool colors,
                                               bool faces, const std::optional<std::string>& slices,
-                                              const std::optional<std::string>& up, bool manifold,
-                                              bool merge, bool texture) {
+                                              const std::optional<std::string>& up,
+                                              const std::optional<bool>& manifold, bool merge,
+                                              bool texture) {
   ExportOptions options;
   std::vector<std::string> notes;
   options.notes = &notes;
-  options.faces = manifold ? FaceMesh::kManifold
-                  : merge  ? FaceMesh::kFewest
-                           : FaceMesh::kWatertight;
+  const bool is_manifold = manifold.value_or(path.extension() == ".stl" && !merge);
+  options.faces = is_manifold ? FaceMesh::kManifold
+                  : merge     ? FaceMesh::kFewest
+                              : FaceMesh::kWatertight;
   options.texture = texture;
   if (up && (slices || (*up != "y" && *up != "z")))
     throw py::value_error("up must be 'y' or 'z', and is not for slices");
-  if (manifold && merge) throw py::value_error("choose one of manifold and merge");
+  if (is_manifold && merge) throw py::value_error("choose one of manifold and merge");
   if (window) options.window = window_of(dag, window);
   if (colors) options.look = dag.look();
   const int axis = slices ? axis_of(*slices) : 0;
@@ -56,7 +58,7 @@ void add_exports(DagClass& dag) {
   dag.def(
       "export", &export_dag, py::arg("path"), py::kw_only(), py::arg("window") = py::none(),
       py::arg("colors") = true, py::arg("faces") = false, py::arg("slices") = py::none(),
-      py::arg("up") = py::none(), py::arg("manifold") = false, py::arg("merge") = false,
+      py::arg("up") = py::none(), py::arg("manifold") = py::none(), py::arg("merge") = false,
       py::arg("texture") = false,
       "Write the voxels for other programs: outer faces as .glb, .obj, .stl; voxels as .vox, "
       ".binvox, .schem, .voxel.json, .npy, .raw, .spc.npy, .vdb, .nvdb; points as .ply, with "

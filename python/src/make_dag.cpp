@@ -266,7 +266,7 @@ DagPointer import_file(const std::filesystem::path& path, std::optional<std::int
   DagPointer dag = run_work([&](Work work) {
     return with_file_name(path.string(), [&] {
       const std::unique_ptr<VoxelSource> source = open_voxel_source(
-          path, {.threshold = threshold, .use_placement = !pitch && !origin, .grid = grid});
+          path, {.threshold = threshold, .use_placement = !pitch && !origin, .grid = grid, .work = work});
       warnings = source->warnings();
       check_grid_options(*source, options);
       return import_source(*source, options, path.filename().string(), work);

@@ -34,7 +34,7 @@ GltfTransform rotation_about(Vec3d axis, double degrees) {
 
 GltfTransform collada_matrix_of(std::string_view text) {
   std::array<double, 16> m;
-  parse_numbers(text, m, "matrix");
+  parse_exact_numbers(text, m, "matrix");
   GltfTransform transform;
   for (std::size_t c = 0; c < 4; ++c) transform.columns[c] = {m[c], m[4 + c], m[8 + c]};
   return transform;
@@ -47,13 +47,13 @@ GltfTransform node_transform_of(const XmlElement& element) {
   const std::span<double> three(v.data(), 3);
   if (element.name == "matrix") return collada_matrix_of(element.text);
   if (element.name == "translate") {
-    parse_numbers(element.text, three, "translate");
+    parse_exact_numbers(element.text, three, "translate");
     transform.columns[3] = {v[0], v[1], v[2]};
   } else if (element.name == "scale") {
-    parse_numbers(element.text, three, "scale");
+    parse_exact_numbers(element.text, three, "scale");
     for (std::size_t c = 0; c < 3; ++c) transform.columns[c] = transform.columns[c] * v[c];
   } else if (element.name == "rotate") {
-    parse_numbers(element.text, v, "rotate");
+    parse_exact_numbers(element.text, v, "rotate");
     return rotation_about({v[0], v[1], v[2]}, v[3]);
   } else if (element.name == "skew" || element.name == "lookat") {
     throw Error("a node has the transform " + in_quotes(element.name) + ", which is not read");
@@ -160,7 +160,7 @@ class ColladaReader {
       in(*asset, [&] {
         double metres = 1;
         if (const std::string_view text = (*asset)["meter"]; !text.empty())
-          parse_numbers(text, {&metres, 1}, "the unit");
+          parse_exact_numbers(text, {&metres, 1}, "the unit");
         if (!(metres > 0)) throw Error("the unit must be greater than 0");
         for (std::size_t c = 0; c < 3; ++c) unit.columns[c] = unit.columns[c] * metres;
       });
@@ -394,7 +394,7 @@ class ColladaReader {
       if (const XmlElement* const color = diffuse->child("color"); color != nullptr)
         in(*color, [&] {
           std::array<double, 4> rgba;
-          parse_numbers(color->text, rgba, "a colour");
+          parse_exact_numbers(color->text, rgba, "a colour");
           for (int c = 0; c < 3; ++c)
             material.base_color[c] = srgb_to_linear(
                 static_cast<float>(std::clamp(rgba[static_cast<std::size_t>(c)], 0.0, 1.0)));

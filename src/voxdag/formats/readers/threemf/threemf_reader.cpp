@@ -75,7 +75,7 @@ GltfTransform item_transform_of(std::string_view text) {
   GltfTransform transform;
   if (text.empty()) return transform;
   std::array<double, 12> m;
-  parse_numbers(text, m, "transform");
+  parse_exact_numbers(text, m, "transform");
   for (std::size_t c = 0; c < 4; ++c) transform.columns[c] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]};
   return transform;
 }
@@ -157,7 +157,7 @@ class ModelHandler : public XmlHandler {
     Vec3d vertex;
     for (int axis = 0; axis < 3; ++axis) {
       const char name[] = {"xyz"[axis], 0};
-      parse_numbers(attributes[name], {&vertex[axis], 1}, "the coordinate of a vertex");
+      parse_exact_numbers(attributes[name], {&vertex[axis], 1}, "the coordinate of a vertex");
     }
     object_->vertices.push_back(unit_.point(vertex));
   }

@@ -61,7 +61,7 @@ std::string_view take_token(std::string_view& text) {
 
 }  // namespace
 
-void parse_numbers(std::string_view text, std::span<double> values, const char* what) {
+void parse_exact_numbers(std::string_view text, std::span<double> values, const char* what) {
   const auto fail = [&](const std::string& reason) {
     throw Error(std::string(what) + " must have " + std::to_string(values.size()) +
                 " finite numbers: " + reason);

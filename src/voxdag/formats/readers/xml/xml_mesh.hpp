@@ -43,7 +43,7 @@ class InstancedMesh {
 
 /// Parses as many numbers as `values` has. Throws Error without a file, which calls the text
 /// `what`, if there are more or fewer, or if one is not finite.
-void parse_numbers(std::string_view text, std::span<double> values, const char* what);
+void parse_exact_numbers(std::string_view text, std::span<double> values, const char* what);
 
 /// Removes the next number from the text and returns it. Throws Error without a file, which calls
 /// it `what`, if it is no whole number below `end`.
