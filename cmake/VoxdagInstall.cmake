@@ -50,4 +50,5 @@ write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/voxdagConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/voxdagConfig.cmake ${PROJECT_BINARY_DIR}/voxdagConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindWebP.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/Findminizip.cmake ${PROJECT_SOURCE_DIR}/cmake/Findzstd.cmake
         DESTINATION ${package_dir})

@@ -2,11 +2,13 @@
 /// The library's own mesh readers, chosen by a byte.
 #include <cstdint>
 
+#include "voxdag/formats/readers/collada/collada_reader.hpp"
 #include "voxdag/formats/readers/gltf/gltf_reader.hpp"
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 #include "voxdag/formats/readers/off/off_reader.hpp"
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 #include "voxdag/formats/readers/stl/stl_reader.hpp"
+#include "voxdag/formats/readers/threemf/threemf_reader.hpp"
 #include "voxdag/formats/readers/used_vertices.hpp"
 
 namespace voxdag {
@@ -20,7 +22,7 @@ inline MeshWithAppearance read_chosen_mesh(std::uint8_t choice, MeshSource sourc
     return read;
   };
   const ReadParts parts = choice >= 128 ? ReadParts::kMeshAndAppearance : ReadParts::kMesh;
-  switch (choice % 5) {
+  switch (choice % 7) {
     case 0:
       return finish(read_obj(source, parts));
     case 1:
@@ -29,6 +31,10 @@ inline MeshWithAppearance read_chosen_mesh(std::uint8_t choice, MeshSource sourc
       return finish(read_gltf(source, parts));
     case 3:
       return finish(read_stl(source, parts));
+    case 4:
+      return finish(read_collada(source, parts));
+    case 5:
+      return finish(read_3mf(source, parts));
     default:
       return finish(read_off(source, parts));
   }

@@ -8,6 +8,7 @@ voxdag_packages=(
   # the library
   libtbb-dev libhwy-dev libpng-dev libjpeg-dev libwebp-dev libstb-dev libopenexr-dev
   libfast-float-dev nlohmann-json3-dev libxxhash-dev libdraco-dev libmeshoptimizer-dev libassimp-dev libembree-dev
+  libexpat1-dev libminizip-dev libzstd-dev
   # the command line
   libcli11-dev libfmt-dev libcpp-httplib-dev zlib1g-dev
 )

@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "voxdag/core/vec.hpp"
@@ -13,17 +14,39 @@ namespace voxdag::python {
 template <class T>
 using Array = pybind11::array_t<T, pybind11::array::c_style | pybind11::array::forcecast>;
 
-/// Returns the rows of an array of shape (N, 3). Raises ValueError, which calls the array `name`,
-/// for other shapes.
+/// Returns the kind of an array's type, in NumPy's letters: 'b' bool, 'i' and 'u' whole numbers,
+/// 'f' real numbers. Raises TypeError, which calls the array `name`, if it is not one of `allowed`.
+char kind_of(const pybind11::array& array, const char* name, std::string_view allowed,
+             const char* allowed_in_words);
+
+/// Raises ValueError, which calls the array `name`, unless its shape is (N, 3).
+void check_rows(const pybind11::array& array, const char* name);
+
+/// Returns the rows of an array of real or whole numbers of shape (N, 3), rounded to T. Raises
+/// TypeError for other types and ValueError for other shapes, which call the array `name`.
 template <class T>
-std::vector<Vec3<T>> rows_of(const Array<T>& array, const char* name) {
-  if (array.ndim() != 2 || array.shape(1) != 3)
-    throw pybind11::value_error(std::string(name) + " must have the shape (N, 3)");
+std::vector<Vec3<T>> rows_of(const pybind11::array& given, const char* name) {
+  kind_of(given, name, "iuf", "numbers");
+  check_rows(given, name);
+  const Array<T> array(given);
   std::vector<Vec3<T>> rows(static_cast<std::size_t>(array.shape(0)));
   if (!rows.empty())
     std::memcpy(static_cast<void*>(rows.data()), array.data(), rows.size() * sizeof(rows[0]));
   return rows;
 }
+
+/// Returns the rows of an array of shape (N, 3) whose values are whole, as integers or as real
+/// numbers, from `least` to `most`. Raises ValueError for other values, too.
+std::vector<Vec3<std::int64_t>> whole_rows_of(const pybind11::array& given, const char* name,
+                                              std::int64_t least, std::int64_t most);
+
+/// Returns voxels: whole_rows_of() in the range of 32 bits.
+std::vector<Vec3i> voxels_of(const pybind11::array& given, const char* name);
+
+/// Returns sRGB colours of shape (N, 3) in 8 bits. uint8 stays; uint16 is scaled from 0 to 65535,
+/// real numbers are scaled from 0 to 1; other integers must be 0 to 255. Raises TypeError for other
+/// types, and ValueError for other values and shapes.
+std::vector<Vec3<std::uint8_t>> colors_of(const pybind11::array& given);
 
 /// Returns an array of shape (N, 3).
 template <class T>

@@ -17,18 +17,19 @@ namespace {
 /// Returns the place from which the origins of rays are measured, because rays are in float32.
 Vec3d near(const Dag& dag) { return float_origin(dag.grid().bounds()); }
 
-std::vector<Vec3f> points_of(const Dag& dag, const Array<double>& array, const char* name) {
+std::vector<Vec3f> points_of(const Dag& dag, const py::array& array, const char* name) {
   const Vec3d origin = near(dag);
   std::vector<Vec3f> points;
-  for (const Vec3d p : rows_of(array, name)) points.push_back(static_cast<Vec3f>(p - origin));
+  for (const Vec3d p : rows_of<double>(array, name))
+    points.push_back(static_cast<Vec3f>(p - origin));
   return points;
 }
 
 /// Returns the rays of two arrays of shape (N, 3), or of one row and N.
-std::vector<Ray> rays_of(const Dag& dag, const Array<double>& origins,
-                         const Array<float>& directions, float t_min, float t_max) {
+std::vector<Ray> rays_of(const Dag& dag, const py::array& origins, const py::array& directions,
+                         float t_min, float t_max) {
   const std::vector<Vec3f> from = points_of(dag, origins, "origins");
-  const std::vector<Vec3f> along = rows_of(directions, "directions");
+  const std::vector<Vec3f> along = rows_of<float>(directions, "directions");
   const std::size_t count = std::max(from.size(), along.size());
   if ((from.size() != count && from.size() != 1) || (along.size() != count && along.size() != 1))
     throw py::value_error("origins and directions must have as many rows as each other, or one");
@@ -48,8 +49,8 @@ std::vector<Hit> cast_all(const Dag& dag, const std::vector<Ray>& rays) {
   });
 }
 
-py::dict cast(const Dag& dag, const Array<double>& origins, const Array<float>& directions,
-              float t_min, float t_max) {
+py::dict cast(const Dag& dag, const py::array& origins, const py::array& directions, float t_min,
+              float t_max) {
   const std::vector<Hit> hits = cast_all(dag, rays_of(dag, origins, directions, t_min, t_max));
   std::vector<float> t(hits.size());
   std::vector<Vec3i> voxels(hits.size(), Vec3i{-1, -1, -1});
@@ -72,8 +73,7 @@ py::dict cast(const Dag& dag, const Array<double>& origins, const Array<float>& 
   return result;
 }
 
-py::array_t<bool> occluded(const Dag& dag, const Array<double>& origins,
-                           const Array<double>& targets) {
+py::array_t<bool> occluded(const Dag& dag, const py::array& origins, const py::array& targets) {
   const std::vector<Vec3f> from = points_of(dag, origins, "origins"),
                            to = points_of(dag, targets, "targets");
   if (from.size() != to.size() && from.size() != 1 && to.size() != 1)

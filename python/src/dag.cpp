@@ -33,4 +33,8 @@ int axis_of(const std::string& name) {
   return static_cast<int>(axis);
 }
 
+void warn(const std::string& text) {
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 }  // namespace voxdag::python

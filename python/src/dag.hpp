@@ -54,6 +54,9 @@ int levels_of(std::int64_t resolution);
 /// Returns the number of "x", "y" or "z". Raises ValueError for other names.
 int axis_of(const std::string& name);
 
+/// Issues a UserWarning. Throws if Python turns it into an exception.
+void warn(const std::string& text);
+
 /// Add the functions that make DAGs, and the methods of Dag, to the module.
 void add_makers(pybind11::module_& module);
 void add_rays(DagClass& dag);

@@ -1,4 +1,5 @@
-/// DAGs from DAGs: set operations, moves, dilation, components. Results have no colours.
+/// DAGs from DAGs: set operations, moves, dilation, components. Results keep the colours if each of
+/// their voxels has one, and warn of attributes that they drop.
 #include <pybind11/operators.h>
 #include <pybind11/stl.h>
 
@@ -11,27 +12,116 @@
 #include "voxdag/algebra/components.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/algebra/grow.hpp"
+#include "voxdag/algebra/query/containing_voxel.hpp"
 #include "voxdag/algebra/reorient.hpp"
 #include "voxdag/algebra/shift.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/model/aligned_models.hpp"
 #include "voxdag/file/model/edited.hpp"
+#include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
+#include "voxdag/stored/attributes/look_reader.hpp"
 
 namespace py = pybind11;
 
 namespace voxdag::python {
 namespace {
 
-DagPointer edited_dag(const Dag& source, Svdag dag, const std::string& edit) {
-  return std::make_shared<Dag>(edited(source.model(), std::move(dag), source.grid(), edit));
+/// The result of an edit, and whether it dropped attributes of its source.
+struct Edited {
+  DagPointer dag;
+  bool drops = false;
+};
+
+/// Calls make(work), which returns Edited, as run_work() does. Warns if attributes were dropped.
+template <class Make>
+DagPointer run_edit(const Make& make) {
+  const Edited edited = run_work(make);
+  if (edited.drops)
+    warn(edited.dag->look().has_colors()
+             ? "the result has no normals and materials of its source"
+             : "the result has no colours, normals and materials of its source");
+  return edited.dag;
+}
+
+/// Returns the model with the colours that visit(add) adds: add(voxel, colour), which may give a
+/// voxel several colours: it gets their mean, in linear light. Each voxel of `dag` needs one.
+template <class Visit>
+DagPointer colored_dag(VdagMetadata metadata, Work work, const Visit& visit) {
+  constexpr std::size_t kColorsInMemory = std::size_t{1} << 26;
+  ColoredVoxelBuilder builder(metadata.grid.levels, kColorsInMemory,
+                              std::filesystem::temp_directory_path(), work);
+  std::uint64_t count = 0;
+  visit([&](Vec3i voxel, Value8 color) {
+    work.poll_seldom(count++);
+    builder.add(voxel, {color.x, color.y, color.z});
+  });
+  auto [dag, attributes] = builder.finish(0);  // The colours are not coded with a loss again.
+  metadata.attributes.resolution = metadata.grid.resolution();
+  metadata.attributes.colors = {0, attributes.color_errors.squared};
+  return std::make_shared<Dag>(
+      DagModel(std::move(dag), std::move(attributes), std::move(metadata)));
+}
+
+/// Returns the model of an edit without attributes.
+DagPointer plain_dag(const Dag& source, Svdag dag, const Grid& grid, const std::string& edit) {
+  return std::make_shared<Dag>(edited(source.model(), std::move(dag), grid, edit));
+}
+
+/// Returns the model of an edit. source_of(voxel) is the voxel of `source` that a voxel of `dag`
+/// was: it has its colour.
+template <class SourceOf>
+Edited moved_dag(const Dag& source, Svdag dag, const std::string& edit, Work work,
+                 const SourceOf& source_of) {
+  const LookView look = source.look();
+  const DagPointer plain = plain_dag(source, std::move(dag), source.grid(), edit);
+  if (!look.has_colors()) return {plain, !look.is_empty()};
+  LookReader reader(look);
+  const int levels = source.grid().levels;
+  const DagPointer colored = colored_dag(plain->model().metadata(), work, [&](const auto& add) {
+    for_each_voxel(plain->view(), whole_grid(levels),
+                   [&](Vec3i voxel) { add(voxel, reader.read(source_of(voxel), levels).color); });
+  });
+  return {colored, look.has_normals() || look.has_materials()};
+}
+
+/// Returns the model of an edit that adds voxels, which have no colours.
+Edited without_attributes(const Dag& source, Svdag dag, const std::string& edit) {
+  return {plain_dag(source, std::move(dag), source.grid(), edit), !source.look().is_empty()};
+}
+
+/// Returns the model of an edit that only removes voxels.
+Edited reduced_dag(const Dag& source, Svdag dag, const std::string& edit, Work work) {
+  return moved_dag(source, std::move(dag), edit, work, [](Vec3i voxel) { return voxel; });
+}
+
+/// Returns the model of a combination; voxels have the colours of `a`, else of `b`.
+Edited combined_dag(const Dag& a, const Dag& b, const DagPointer& plain, bool needs_b, Work work) {
+  const LookView look_a = a.look(), look_b = b.look();
+  const bool has_normals = look_a.has_normals() || look_a.has_materials();
+  if (!look_a.has_colors() || (needs_b && !look_b.has_colors()))
+    return {plain, has_normals || look_a.has_colors() || (needs_b && !look_b.is_empty())};
+  LookReader reader_a(look_a), reader_b(look_b);
+  const Grid& grid = plain->grid();
+  const DagPointer colored = colored_dag(plain->model().metadata(), work, [&](const auto& add) {
+    for_each_voxel(plain->view(), whole_grid(grid.levels), [&](Vec3i voxel) {
+      const Vec3d centre = grid.to_world(Vec3d(voxel) + Vec3d{0.5, 0.5, 0.5});
+      const Vec3i in_a = containing_voxel(a.grid(), centre);
+      const bool is_of_a = !needs_b || svdag_contains(a.view(), in_a, a.grid().levels);
+      add(voxel, is_of_a
+                     ? reader_a.read(in_a, a.grid().levels).color
+                     : reader_b.read(containing_voxel(b.grid(), centre), b.grid().levels).color);
+    });
+  });
+  return {colored, has_normals || (needs_b && (look_b.has_normals() || look_b.has_materials()))};
 }
 
 DagPointer combined(const Dag& a, const Dag& b, SetOperation operation, const char* name) {
-  return run_work([&](Work work) {
+  const bool needs_b = operation == SetOperation::kUnion || operation == SetOperation::kSymmetric;
+  return run_edit([&](Work work) {
     const AlignedModels aligned(a.model(), b.model(), work);
-    return std::make_shared<Dag>(
-        edited(a.model(), aligned.result(operation), aligned.grid_of(operation),
-               std::string(name) + " " + b.model().metadata().source.name));
+    const DagPointer plain = plain_dag(a, aligned.result(operation), aligned.grid_of(operation),
+                                       std::string(name) + " " + b.model().metadata().source.name);
+    return combined_dag(a, b, plain, needs_b, work);
   });
 }
 
@@ -44,11 +134,12 @@ Neighbours neighbours_of(int count) {
 DagPointer grown(const Dag& dag, int steps, int neighbours, bool is_dilation) {
   if (steps < 1) throw py::value_error("steps must be at least 1");
   const Neighbours kind = neighbours_of(neighbours);
-  return run_work([&](Work work) {
-    return edited_dag(
-        dag,
-        is_dilation ? dilate(dag.view(), steps, kind, work) : erode(dag.view(), steps, kind, work),
-        (is_dilation ? "dilated by " : "eroded by ") + std::to_string(steps));
+  return run_edit([&](Work work) {
+    if (!is_dilation)
+      return reduced_dag(dag, erode(dag.view(), steps, kind, work),
+                         "eroded by " + std::to_string(steps), work);
+    return without_attributes(dag, dilate(dag.view(), steps, kind, work),
+                              "dilated by " + std::to_string(steps));
   });
 }
 
@@ -58,19 +149,20 @@ std::string text_of(Vec3i v) {
 
 DagPointer cropped(const Dag& dag, const Window& window) {
   const Box3i box = window_of(dag, window);
-  return run_work([&](Work work) {
-    return edited_dag(dag, crop(dag.view(), box, work),
-                      "cropped to " + text_of(box.lo) + "," + text_of(box.hi));
+  return run_edit([&](Work work) {
+    return reduced_dag(dag, crop(dag.view(), box, work),
+                       "cropped to " + text_of(box.lo) + "," + text_of(box.hi), work);
   });
 }
 
 DagPointer shifted(const Dag& dag, const std::array<std::int32_t, 3>& offset, bool drop_outside) {
   const Vec3i by{offset[0], offset[1], offset[2]};
-  return run_work([&](Work work) {
-    DagPointer moved = edited_dag(dag, shift(dag.view(), by, dag.grid().levels, work),
-                                  "shifted by " + text_of(by));
+  return run_edit([&](Work work) {
+    const Edited moved =
+        moved_dag(dag, shift(dag.view(), by, dag.grid().levels, work), "shifted by " + text_of(by),
+                  work, [by](Vec3i voxel) { return voxel - by; });
     const std::uint64_t lost =
-        dag.model().metadata().counts.voxels - moved->model().metadata().counts.voxels;
+        dag.model().metadata().counts.voxels - moved.dag->model().metadata().counts.voxels;
     if (lost != 0 && !drop_outside)
       throw Error(std::to_string(lost) +
                   " voxels would leave the grid: drop_outside=True leaves them out");
@@ -79,18 +171,32 @@ DagPointer shifted(const Dag& dag, const std::array<std::int32_t, 3>& offset, bo
 }
 
 DagPointer reoriented(const Dag& dag, const Orientation& orientation, const std::string& edit) {
-  return run_work(
-      [&](Work work) { return edited_dag(dag, reorient(dag.view(), orientation, work), edit); });
+  return run_edit([&](Work work) {
+    return moved_dag(dag, reorient(dag.view(), orientation, work), edit, work, [&](Vec3i voxel) {
+      return source_cell(orientation, voxel, dag.grid().levels);
+    });
+  });
 }
 
 DagPointer coarser(const Dag& dag, std::int64_t resolution) {
   const int levels = levels_of(resolution);
   if (levels > dag.grid().levels) throw py::value_error("resolution exceeds that of the DAG");
-  return run_work([&](Work work) {
+  return run_edit([&](Work work) -> Edited {
     Svdag coarse = coarsen(dag.view(), levels, work);
     VdagMetadata metadata = coarser_metadata(dag.model().metadata(), coarse.view());
     metadata.attributes = {};
-    return std::make_shared<Dag>(DagModel(std::move(coarse), {}, std::move(metadata)));
+    const LookView look = dag.look();
+    if (!look.has_colors())
+      return {std::make_shared<Dag>(DagModel(std::move(coarse), {}, std::move(metadata))),
+              !look.is_empty()};
+    LookReader reader(look);
+    const int fine = dag.grid().levels, cut = fine - levels;
+    const DagPointer colored = colored_dag(metadata, work, [&](const auto& add) {
+      for_each_voxel(dag.view(), whole_grid(fine), [&](Vec3i v) {
+        add({v.x >> cut, v.y >> cut, v.z >> cut}, reader.read(v, fine).color);
+      });
+    });
+    return {colored, look.has_normals() || look.has_materials()};
   });
 }
 
@@ -108,9 +214,9 @@ py::array_t<std::uint64_t> component_table(const Dag& dag, int neighbours) {
 
 DagPointer large_components(const Dag& dag, std::uint64_t least, int neighbours) {
   const Neighbours kind = neighbours_of(neighbours);
-  return run_work([&](Work work) {
-    return edited_dag(dag, keep_components(dag.view(), least, kind, work),
-                      "components of at least " + std::to_string(least) + " voxels");
+  return run_edit([&](Work work) {
+    return reduced_dag(dag, keep_components(dag.view(), least, kind, work),
+                       "components of at least " + std::to_string(least) + " voxels", work);
   });
 }
 
@@ -138,7 +244,8 @@ void add_moves(DagClass& dag) {
           "Rotate about 'x', 'y' or 'z' in the middle of the grid by quarter turns: one about z "
           "takes x to y.")
       .def("coarsen", &coarser, py::arg("resolution"),
-           "The same place in larger voxels, which are set if the cell has voxels.")
+           "The same place in larger voxels, which are set if the cell has voxels. A voxel has the "
+           "mean colour of its voxels.")
       .def(
           "components", &component_table, py::kw_only(), py::arg("neighbours") = 26,
           "The sizes of connected components, the largest first: (K, 2) uint64, a number of voxels "
@@ -182,8 +289,9 @@ void add_edits(DagClass& dag) {
       .def(
           "fill_cavities",
           [](const Dag& d) {
-            return run_work(
-                [&](Work work) { return edited_dag(d, fill_cavities(d.view(), work), "filled"); });
+            return run_edit([&](Work work) {
+              return without_attributes(d, fill_cavities(d.view(), work), "filled");
+            });
           },
           "Fill the empty places that no way over faces connects with the sides of the grid.");
 }

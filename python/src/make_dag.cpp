@@ -2,7 +2,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "arrays.hpp"
 #include "dag.hpp"
@@ -104,14 +106,16 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
 }
 
 /// Returns a mesh with the colours of its vertices, if there are some.
-MeshWithAppearance mesh_of(const Array<double>& vertices, const Array<std::int64_t>& faces,
-                           const std::optional<Array<std::uint8_t>>& colors) {
+MeshWithAppearance mesh_of(const py::array& vertices, const py::array& faces,
+                           const std::optional<py::array>& colors) {
   MeshWithAppearance source;
-  const std::vector<Vec3d> points = rows_of(vertices, "vertices");
+  const std::vector<Vec3d> points = rows_of<double>(vertices, "vertices");
   source.mesh.vertices.reserve(points.size());
   for (const Vec3d p : points) source.mesh.vertices.push_back(static_cast<Vec3f>(p));
   const auto count = static_cast<std::int64_t>(source.mesh.vertices.size());
-  for (const Vec3<std::int64_t> face : rows_of(faces, "faces")) {
+  using Limits = std::numeric_limits<std::int64_t>;
+  for (const Vec3<std::int64_t> face :
+       whole_rows_of(faces, "faces", Limits::min(), Limits::max())) {
     for (int i = 0; i < 3; ++i) {
       if (face[i] < 0 || face[i] >= count)
         throw py::value_error("faces has the index " + std::to_string(face[i]) +
@@ -129,7 +133,7 @@ MeshWithAppearance mesh_of(const Array<double>& vertices, const Array<std::int64
     source.mesh.vertices[i] = static_cast<Vec3f>(points[i] - source.mesh.origin);
   source.appearance.materials.resize(1);
   if (!colors) return source;
-  const std::vector<Vec3<std::uint8_t>> values = rows_of(*colors, "colors");
+  const std::vector<Vec3<std::uint8_t>> values = colors_of(*colors);
   if (values.size() != source.mesh.vertices.size())
     throw py::value_error("colors must have a row for each vertex");
   for (const Triangle& triangle : source.mesh.triangles)
@@ -143,10 +147,10 @@ MeshWithAppearance mesh_of(const Array<double>& vertices, const Array<std::int64
   return source;
 }
 
-DagPointer build(const Array<double>& vertices, const Array<std::int64_t>& faces,
+DagPointer build(const py::array& vertices, const py::array& faces,
                  std::optional<std::int64_t> resolution, std::optional<double> pitch,
                  std::optional<Bounds> bounds, const py::object& solid,
-                 const std::optional<Array<std::uint8_t>>& colors) {
+                 const std::optional<py::array>& colors) {
   const GridRequest grid = grid_request(resolution, pitch, bounds);
   const std::optional<SolidRule> rule = rule_of(solid);
   const MeshWithAppearance source = mesh_of(vertices, faces, colors);
@@ -197,10 +201,10 @@ class ArraySource : public VoxelSource {
   bool has_points_;
 };
 
-std::vector<Rgb8> colors_of(const std::optional<Array<std::uint8_t>>& colors, std::size_t rows) {
+std::vector<Rgb8> colors_of_rows(const std::optional<py::array>& colors, std::size_t rows) {
   std::vector<Rgb8> result;
   if (!colors) return result;
-  for (const Vec3<std::uint8_t> c : rows_of(*colors, "colors")) result.push_back({c.x, c.y, c.z});
+  for (const Vec3<std::uint8_t> c : colors_of(*colors)) result.push_back({c.x, c.y, c.z});
   if (result.size() != rows) throw py::value_error("colors must have a row for each point");
   return result;
 }
@@ -210,13 +214,6 @@ DagPointer import_source(const VoxelSource& source, const ImportOptions& options
   return std::make_shared<Dag>(import_model(source, options, name, work).model);
 }
 
-/// Returns the grid of voxels that have numbers: by default the smallest one that holds them.
-GridRequest coords_grid(const std::optional<std::int64_t>& resolution) {
-  GridRequest request;
-  request.resolution = checked(resolution);
-  return request;
-}
-
 ImportOptions import_options(const GridRequest& grid) {
   ImportOptions options;
   static_cast<GridRequest&>(options) = grid;
@@ -224,28 +221,50 @@ ImportOptions import_options(const GridRequest& grid) {
   return options;
 }
 
-DagPointer from_points(const Array<double>& points, std::optional<std::int64_t> resolution,
+using Point = std::array<double, 3>;
+
+/// Sets the place of the grid of voxels that have numbers: by default voxels of size 1 from 0.
+/// Without `resolution`, it is the smallest grid that holds them.
+ImportOptions options_of_voxels(const std::optional<std::int64_t>& resolution,
+                                const std::optional<double>& pitch,
+                                const std::optional<Point>& origin) {
+  if (pitch && !(*pitch > 0 && std::isfinite(*pitch)))
+    throw py::value_error("pitch must be positive");
+  GridRequest request{std::nullopt, pitch, std::nullopt};
+  if (resolution) request.levels = levels_of(*resolution);
+  ImportOptions options = import_options(request);
+  if (!origin) return options;
+  options.origin = {(*origin)[0], (*origin)[1], (*origin)[2]};
+  if (!is_finite(*options.origin)) throw py::value_error("origin must be finite");
+  return options;
+}
+
+DagPointer from_points(const py::array& points, std::optional<std::int64_t> resolution,
                        std::optional<double> pitch, std::optional<Bounds> bounds,
-                       const std::optional<Array<std::uint8_t>>& colors) {
+                       const std::optional<py::array>& colors) {
   const ImportOptions options = import_options(grid_request(resolution, pitch, bounds));
-  std::vector<Vec3d> places = rows_of(points, "points");
-  std::vector<Rgb8> values = colors_of(colors, places.size());
+  std::vector<Vec3d> places = rows_of<double>(points, "points");
+  std::vector<Rgb8> values = colors_of_rows(colors, places.size());
   const ArraySource source(std::move(places), std::move(values), true);
   return run_work([&](Work work) { return import_source(source, options, "points", work); });
 }
 
-DagPointer from_coords(const Array<std::int32_t>& coords, std::optional<std::int64_t> resolution,
-                       const std::optional<Array<std::uint8_t>>& colors) {
-  const ImportOptions options = import_options(coords_grid(resolution));
+DagPointer from_coords(const py::array& coords, std::optional<std::int64_t> resolution,
+                       const std::optional<double>& pitch, const std::optional<Point>& origin,
+                       const std::optional<py::array>& colors) {
+  const ImportOptions options = options_of_voxels(resolution, pitch, origin);
   std::vector<Vec3d> places;
-  for (const Vec3i v : rows_of(coords, "coords")) places.push_back(Vec3d(v));
-  std::vector<Rgb8> values = colors_of(colors, places.size());
+  for (const Vec3i v : voxels_of(coords, "coords")) places.push_back(Vec3d(v));
+  std::vector<Rgb8> values = colors_of_rows(colors, places.size());
   const ArraySource source(std::move(places), std::move(values), false);
   return run_work([&](Work work) { return import_source(source, options, "coords", work); });
 }
 
-DagPointer from_dense(const Array<bool>& dense, std::optional<std::int64_t> resolution) {
-  if (dense.ndim() != 3) throw py::value_error("dense must have three dimensions: x, y, z");
+DagPointer from_dense(const py::array& given, std::optional<std::int64_t> resolution,
+                      const std::optional<double>& pitch, const std::optional<Point>& origin) {
+  if (given.ndim() != 3) throw py::value_error("dense must have three dimensions: x, y, z");
+  kind_of(given, "dense", "biu", "bool or whole numbers: compare real ones, dense > 0.5");
+  const Array<bool> dense(given);
   std::vector<Vec3d> places;
   const auto at = dense.unchecked<3>();
   std::int64_t side = 1 << kMinLevels;
@@ -257,9 +276,35 @@ DagPointer from_dense(const Array<bool>& dense, std::optional<std::int64_t> reso
           places.push_back(
               {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
   const auto least = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(side)));
-  const ImportOptions options = import_options(coords_grid(resolution.value_or(least)));
+  const ImportOptions options = options_of_voxels(resolution.value_or(least), pitch, origin);
   const ArraySource source(std::move(places), {}, false);
   return run_work([&](Work work) { return import_source(source, options, "dense", work); });
+}
+
+/// Reads a file of points, voxels or a volume, as `voxdag import` does. Its warnings are Python's.
+DagPointer import_file(const std::filesystem::path& path, std::optional<std::int64_t> resolution,
+                       const std::optional<double>& pitch, const std::optional<Point>& origin,
+                       const std::optional<Bounds>& bounds, const std::optional<double>& threshold,
+                       const std::string& grid, bool colors) {
+  ImportOptions options = options_of_voxels(resolution, pitch, origin);
+  if (bounds) {
+    const auto& [lo, hi] = *bounds;
+    options.bounds = {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+  }
+  options.colors = colors;
+  std::vector<std::string> warnings;
+  DagPointer dag = run_work([&](Work work) {
+    return with_file_name(path.string(), [&] {
+      const std::unique_ptr<VoxelSource> source = open_voxel_source(
+          path,
+          {.threshold = threshold, .use_placement = !pitch && !origin, .grid = grid, .work = work});
+      warnings = source->warnings();
+      check_grid_options(*source, options);
+      return import_source(*source, options, path.filename().string(), work);
+    });
+  });
+  for (const std::string& warning : warnings) warn(path.string() + ": " + warning);
+  return dag;
 }
 
 DagPointer open(const std::filesystem::path& path) {
@@ -280,10 +325,26 @@ void add_makers(py::module_& module) {
   module.def("from_points", &from_points, py::arg("points"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
              py::arg("colors") = none);
-  module.def("from_coords", &from_coords, py::arg("coords"), py::kw_only(),
-             py::arg("resolution") = none, py::arg("colors") = none);
+  module.def(
+      "from_coords", &from_coords, py::arg("coords"), py::kw_only(), py::arg("resolution") = none,
+      py::arg("pitch") = none, py::arg("origin") = none, py::arg("colors") = none,
+      "The DAG of voxels (N, 3), whole numbers. resolution: voxels per side of the grid, a "
+      "power of two; default: the least that holds them. pitch: side of a voxel (default 1); "
+      "origin: lower corner of voxel (0, 0, 0), world units. colors: (N, 3), sRGB: uint8, "
+      "uint16, or real numbers from 0 to 1.");
   module.def("from_dense", &from_dense, py::arg("dense"), py::kw_only(),
-             py::arg("resolution") = none);
+             py::arg("resolution") = none, py::arg("pitch") = none, py::arg("origin") = none,
+             "The DAG of the voxels [x, y, z] that are True, or not 0 in whole numbers. "
+             "resolution, pitch, origin: as for from_coords().");
+  module.def("import_file", &import_file, py::arg("path"), py::kw_only(),
+             py::arg("resolution") = none, py::arg("pitch") = none, py::arg("origin") = none,
+             py::arg("bounds") = none, py::arg("threshold") = none, py::arg("grid") = "",
+             py::arg("colors") = true,
+             "Read a file of points, voxels or a volume: .vox, .las, .ply, .nrrd, .npy and others, "
+             "as `voxdag import` does (docs/import.md). Points need resolution or pitch. "
+             "threshold: for volumes, the least value that sets a voxel. grid: the name of a grid "
+             "of a .vdb file. Raises OSError if the file cannot be read; what the file holds and "
+             "is left out becomes a warning.");
 }
 
 }  // namespace voxdag::python

@@ -25,8 +25,8 @@ Vec3d to_grid(const Grid& grid, Vec3d world) {
   return (world - grid.origin) * (1 / grid.voxel_size);
 }
 
-py::array_t<bool> contains(const Dag& dag, const Array<double>& points) {
-  const std::vector<Vec3d> places = rows_of(points, "points");
+py::array_t<bool> contains(const Dag& dag, const py::array& points) {
+  const std::vector<Vec3d> places = rows_of<double>(points, "points");
   py::array_t<bool> result(static_cast<py::ssize_t>(places.size()));
   bool* const inside = result.mutable_data();
   run_work([&](Work work) {
@@ -39,8 +39,8 @@ py::array_t<bool> contains(const Dag& dag, const Array<double>& points) {
   return result;
 }
 
-py::dict nearest(const Dag& dag, const Array<double>& points) {
-  const std::vector<Vec3d> places = rows_of(points, "points");
+py::dict nearest(const Dag& dag, const py::array& points) {
+  const std::vector<Vec3d> places = rows_of<double>(points, "points");
   std::vector<Vec3i> voxels(places.size(), Vec3i{-1, -1, -1});
   std::vector<double> distances(places.size(), HUGE_VAL);
   run_work([&](Work work) {
@@ -70,11 +70,11 @@ py::array_t<std::int32_t> coords(const Dag& dag, const std::optional<Window>& wi
   }));
 }
 
-py::object colors(const Dag& dag, const Array<std::int32_t>& voxels) {
+py::object colors(const Dag& dag, const py::array& voxels) {
   LookReader look(dag.look());
   if (!look.has_colors()) throw py::value_error("the DAG has no colours");
   std::vector<Value8> values;
-  for (const Vec3i voxel : rows_of(voxels, "voxels"))
+  for (const Vec3i voxel : voxels_of(voxels, "voxels"))
     values.push_back(look.read(voxel, dag.grid().levels).color);
   return array_of(values);
 }

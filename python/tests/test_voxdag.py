@@ -1,8 +1,11 @@
 """The Python module against NumPy: each answer is computed again from the coordinates."""
 import _thread
 import ast
+import copy
+import pickle
 import threading
 import time
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -64,6 +67,112 @@ def test_colors():
     np.testing.assert_array_equal(hits["color"], dag.colors(coords))
     with pytest.raises(ValueError, match="no colours"):
         voxdag.from_coords(coords).colors(coords)
+
+
+@pytest.mark.parametrize("colors", [
+    np.array([[255, 0, 51]], np.uint8), np.array([[65535, 0, 13107]], np.uint16),
+    np.array([[1, 0, 0.2]]), np.array([[1, 0, 0.2]], np.float32), np.array([[1.0000001, -1e-9, 0.2]]),
+    np.array([[255, 0, 51]]), [[255, 0, 51]]])
+def test_colors_of_every_type(colors):
+    expected = voxdag.from_coords([[1, 2, 3]], colors=np.array([[255, 0, 51]], np.uint8)).colors([[1, 2, 3]])
+    dag = voxdag.from_points([[1.5, 2.5, 3.5]], pitch=1, bounds=((0, 0, 0), (4, 4, 4)), colors=colors)
+    np.testing.assert_array_equal(dag.colors([[1, 2, 3]]), expected)
+
+
+@pytest.mark.parametrize("call, reason", [
+    (lambda: voxdag.from_coords([[np.nan, 0, 0]]), "coords has nan, which must be a whole number"),
+    (lambda: voxdag.from_coords([[1.9, 0, 0]]), "coords has 1.9"),
+    (lambda: voxdag.from_coords([[2 ** 32 + 1, 0, 0]]), "coords has 4294967297"),
+    (lambda: voxdag.from_coords(np.array([[2 ** 63 + 1, 0, 0]], np.uint64)), "coords has 9223372036854775809"),
+    (lambda: voxdag.build(CUBE, CUBE_FACES + 0.5, resolution=8), "faces has 0.5"),
+    (lambda: voxdag.from_coords([[1, 2, 3]], colors=[[256, 0, 0]]), "colors has 256"),
+    (lambda: voxdag.from_coords([[1, 2, 3]], colors=[[-1, 0, 0]]), "colors has -1"),
+    (lambda: voxdag.from_coords([[1, 2, 3]], colors=[[255.0, 0, 0]]), "colors has 255.0, .* 0 to 1"),
+    (lambda: voxdag.from_coords([[1, 2, 3]], colors=[[np.nan, 0, 0]]), "colors has nan"),
+    (lambda: voxdag.from_coords([[1, 2, 3]], pitch=0), "pitch must be positive"),
+    (lambda: voxdag.from_coords([[1, 2, 3]], origin=(0, 0, np.inf)), "origin must be finite"),
+])
+def test_values_that_do_not_fit_are_refused(call, reason):
+    with pytest.raises(ValueError, match=reason):
+        call()
+
+
+@pytest.mark.parametrize("call, reason", [
+    (lambda: voxdag.from_points([["a", "b", "c"]], pitch=1), "points has the type <U1"),
+    (lambda: voxdag.from_points(np.zeros((1, 3), complex), pitch=1), "points has the type complex"),
+    (lambda: voxdag.from_coords([[True, False, True]]), "coords has the type bool"),
+    (lambda: voxdag.from_coords([[1, 2, 3]], colors=[[True, False, True]]), "colors has the type bool"),
+    (lambda: voxdag.from_dense(np.full((2, 2, 2), np.nan)), "compare real ones, dense > 0.5"),
+    (lambda: voxdag.build(CUBE.astype(complex), CUBE_FACES, resolution=8), "vertices has the type"),
+    (lambda: voxdag.from_coords([[1, 2, 3]]).nearest([[None, 1, 2]]), "points has the type object"),
+    (lambda: voxdag.from_coords([[1, 2, 3]]).cast([[0, 0, 0]], [["x", "y", "z"]]), "directions has the type"),
+])
+def test_types_that_do_not_fit_are_type_errors(call, reason):
+    with pytest.raises(TypeError, match=reason):
+        call()
+
+
+def test_coords_and_dense_arrays_have_a_place():
+    for dag in (voxdag.from_dense(np.ones((2, 2, 2), bool), pitch=0.5, origin=(1, 2, 3)),
+                voxdag.from_coords(np.argwhere(np.ones((2, 2, 2))), pitch=0.5, origin=(1, 2, 3))):
+        assert dag.voxel_size == 0.5 and dag.origin == (1, 2, 3) and len(dag) == 8
+        assert dag.contains([[1.9, 2.9, 3.9], [0.9, 2, 3]]).tolist() == [True, False]
+    assert voxdag.from_dense(np.array([[[0, 3]]])).coords().tolist() == [[0, 0, 1]]
+
+
+def test_edits_keep_colors():
+    coords = random_coords(16, 300)
+    colors = np.random.default_rng(7).integers(0, 256, coords.shape, dtype=np.uint8)
+    dag = voxdag.from_coords(coords, resolution=16, colors=colors)
+    stored = {tuple(c): tuple(v) for c, v in zip(coords.tolist(), dag.colors(coords).tolist())}
+
+    def check(edited, source_of):
+        voxels = edited.coords()
+        assert len(voxels) > 0
+        expected = [stored[tuple(source_of(v).tolist())] for v in voxels]
+        np.testing.assert_array_equal(edited.colors(voxels), expected)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check(dag.crop(((0, 0, 0), (16, 9, 16))), lambda v: v)
+        check(dag.shift((3, -2, 0), drop_outside=True), lambda v: v - (3, -2, 0))
+        check(dag.mirror("y"), lambda v: v * (1, -1, 1) + (0, 15, 0))
+        check(dag.rotate("z"), lambda v: np.array([v[1], 15 - v[0], v[2]]))
+        check(dag.keep_components(2), lambda v: v)
+        check(dag - voxdag.from_coords(coords[:50], resolution=16), lambda v: v)
+        check(dag.crop(((0, 0, 0), (16, 9, 16))) | dag.crop(((0, 5, 0), (16, 16, 16))), lambda v: v)
+        coarse = dag.coarsen(4)
+        assert coarse.info["has_colors"] and as_set(coarse.coords()) == as_set(coords // 4)
+    for edit in (lambda: dag.dilate(), lambda: dag.fill_cavities(),
+                 lambda: dag | voxdag.from_coords(coords, resolution=16)):
+        with pytest.warns(UserWarning, match="no colours"):
+            assert not edit().info["has_colors"]
+
+
+def test_pickles():
+    coords = random_coords(16, 100)
+    dag = voxdag.from_coords(coords, colors=coords * 15, pitch=0.5)
+    again = pickle.loads(pickle.dumps(dag))
+    assert again == dag and again.origin == dag.origin
+    np.testing.assert_array_equal(again.colors(coords), dag.colors(coords))
+    assert copy.deepcopy(dag) == dag
+
+
+def test_imports_files(tmp_path):
+    coords = random_coords(16, 70)
+    dag = voxdag.from_coords(coords, resolution=16, colors=coords * 15, pitch=0.5, origin=(1, 2, 3))
+    dag.export(tmp_path / "a.ply")
+    dag.export(tmp_path / "a.vox")
+    assert voxdag.import_file(tmp_path / "a.ply") == dag
+    again = voxdag.import_file(tmp_path / "a.vox")
+    assert again == dag and again.info["has_colors"]
+    assert not voxdag.import_file(tmp_path / "a.vox", colors=False).info["has_colors"]
+    (tmp_path / "a.xyz").write_text("0 0 0\n1 0 nan\n2 0 0\n")
+    assert voxdag.import_file(tmp_path / "a.xyz", pitch=1).coords().tolist() == [[0, 0, 0], [2, 0, 0]]
+    with pytest.raises(OSError, match="a.xyz: holds points, which need"):
+        voxdag.import_file(tmp_path / "a.xyz")
+    np.save(tmp_path / "v.npy", np.arange(8).reshape(2, 2, 2))
+    assert len(voxdag.import_file(tmp_path / "v.npy", threshold=5)) == 3
 
 
 def test_a_cube():

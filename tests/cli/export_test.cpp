@@ -61,6 +61,60 @@ TEST_F(ExportCommand, UnknownExtensionsAreRefusedWithThoseThatAreKnown) {
                  "--grey");
 }
 
+/// Runs a command line of the shell. $V is the program; the current folder is that of the tests.
+ProcessResult run_shell(const std::string& folder, const std::string& line) {
+  return Process({"sh", "-c", "cd \"$0\"; V=$1; " + line, folder, voxdag_command({})[0]}).wait();
+}
+
+TEST_F(ExportCommand, StandardInputAndOutputAreDashes) {
+  for (const char* line :
+       {"$V export in.vdag --format obj -o - | $V build - --format obj -r 32 -o p.vdag",
+        "$V build - -r 32 -o p.vdag < sponge.ply",
+        "$V build /dev/stdin -r 32 -o p.vdag < sponge.ply",
+        "cat sponge.ply | $V build /dev/stdin -r 32 -o p.vdag",
+        "gzip -c sponge.ply | $V build - -r 32 -o p.vdag",
+        "gzip -c sponge.ply > s.ply.gz; $V build s.ply.gz -r 32 -o - > p.vdag",
+        "$V export in.vdag --format ply -o - > p.ply; $V import - --format ply -o p.vdag < "
+        "p.ply"}) {
+    std::filesystem::remove(path("p.vdag"));
+    const ProcessResult result = run_shell(dir_->path().string(), line);
+    EXPECT_EQ(result.status, 0) << line << result.err;
+    EXPECT_EQ(run_voxdag({"verify", path("p.vdag"), "-q"}).status, 0) << line;
+  }
+  const ProcessResult none = run_shell(dir_->path().string(), "$V build - -r 32 -o p.vdag");
+  EXPECT_EQ(none.status, 1);
+  EXPECT_EQ(none.err, "voxdag: -: the file is empty\n");
+}
+
+TEST_F(ExportCommand, ANamelessImportNeedsAFormat) {
+  const ProcessResult result =
+      run_shell(dir_->path().string(), "echo 1 2 3 | $V import - --voxel-size 1 -o p.vdag");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.err, "voxdag: -: has no ending that tells its format: --format does\n");
+}
+
+TEST_F(ExportCommand, OptionsOfMeshesOfFacesExcludeEachOther) {
+  const auto size_of = [&](const std::vector<std::string>& options, const std::string& name) {
+    std::vector<std::string> arguments{"export", path("in.vdag"), "-o", path(name), "-q"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    EXPECT_EQ(run_voxdag(arguments).status, 0);
+    return std::filesystem::file_size(path(name));
+  };
+  EXPECT_LT(size_of({"--merge"}, "m.glb"), size_of({"--manifold"}, "n.glb"));
+  EXPECT_EQ(size_of({}, "w.glb"), size_of({"--watertight"}, "v.glb"));
+  EXPECT_EQ(size_of({}, "m.stl"), size_of({"--manifold"}, "n.stl"));
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--merge", "-o", "a.stl"},
+        {"--manifold", "-o", "a.ply"},
+        {"--merge", "--manifold", "-o", "a.glb"},
+        {"--up", "x", "-o", "a.glb"},
+        {"--texture", "-o", "a.stl"}}) {
+    std::vector<std::string> arguments{"export", path("in.vdag")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    EXPECT_EQ(run_voxdag(arguments).status, 2);
+  }
+}
+
 TEST_F(ExportCommand, NeverOverwritesItsInputBesideTheOutput) {
   std::filesystem::copy_file(path("in.vdag"), path("q.voxel.bin"));
   expect_failure(run_voxdag({"export", path("q.voxel.bin"), "-o", path("q.voxel.json")}), 2,

@@ -164,8 +164,10 @@ void add_build_command(const Command& program, Session& session) {
   command
       .repeated(
           "mesh", arguments->meshes, [](const std::string& text) { return text; }, "MESH...",
-          "The mesh, several, a folder of them or a pattern: OBJ, PLY, STL, OFF, glTF/GLB, or "
-          "another format if voxdag was built with assimp")
+          "The mesh, several, a folder of them or a pattern: OBJ, PLY, STL, OFF, glTF/GLB, 3MF, "
+          "COLLADA, or another format if voxdag was built with assimp; also compressed (.gz, "
+          ".zst). "
+          "-: standard input")
       .required();
   command.text("-o,--output", arguments->output, "FILE", "The file to write").required();
   const Option as =

@@ -27,33 +27,12 @@ struct ImportArguments {
   TransformRequest transform;
   std::string output;
   ImportOptions options;
+  std::string format, grid;         ///< As in VoxelSourceOptions.
   std::optional<double> threshold;  ///< For volumes.
   bool is_grey = false;
   bool compact = false;
   std::uint64_t memory_limit = 0;
 };
-
-/// Throws Error for options that the kind of file does not have, or needs.
-void check_grid_options(const VoxelSource& source, const ImportOptions& options) {
-  const bool sets_place = options.voxel_size || options.origin;
-  if (source.has_points()) {
-    if (!options.resolution && !options.voxel_size && !source.grid())
-      throw Error("", "", "holds points, which need -r or --voxel-size");
-    if (options.resolution && options.voxel_size)
-      throw Error("", "", "holds points; of -r and --voxel-size one is enough");
-    if (options.origin && (options.bounds || (!options.voxel_size && !options.resolution)))
-      throw Error("", "",
-                  "holds points; --origin goes with -r or --voxel-size, and not with --bounds");
-  } else if (options.bounds) {
-    throw Error("", "", "holds voxels; --bounds is for points");
-  } else if (options.snap || options.padding != 0 || options.center) {
-    throw Error("", "", "holds voxels; --snap, --padding and --center are for points");
-  } else if (sets_place && source.has_place()) {
-    throw Error("", "",
-                "says itself where its voxels lie: --voxel-size and --origin are for files that do "
-                "not");
-  }
-}
 
 std::vector<std::string> warnings_of(const VoxelSource& source, const std::string& name) {
   std::vector<std::string> warnings = source.warnings();
@@ -71,7 +50,8 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
   for (const std::string& file : arguments.files)
     with_file_name(file, [&] {
       std::unique_ptr<VoxelSource> source =
-          open_voxel_source(file, {arguments.threshold, !options.voxel_size && !options.origin});
+          open_voxel_source(file, {arguments.threshold, !options.voxel_size && !options.origin,
+                                   arguments.format, arguments.grid, work});
       print_warnings(warnings_of(*source, file), session);
       check_grid_options(*source, options);
       sources.push_back(
@@ -158,10 +138,15 @@ void add_import_command(const Command& program, Session& session) {
           "One file, several, a folder of them or a pattern. Points: .ply, .las, .pcd, .npy of N x "
           "3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. "
           "Voxels: .vox, .binvox, or .npy of N x 3 integers. Volumes: .npy of X x Y x Z, .nrrd, "
-          ".nhdr, .nii, "
-          ".nii.gz, .vdb, or a folder of .png slices")
+          ".nhdr, .nii, .vdb, or a folder of .png slices. Each of them may also be compressed "
+          "(.gz, "
+          ".zst). -: standard input")
       .required();
   command.text("-o,--output", arguments->output, "OUT", "The .vdag file to write").required();
+  command.text("--format", arguments->format, "EXT",
+               "Read FILE as if its name ended in .EXT: needed for standard input");
+  command.text("--grid", arguments->grid, "NAME",
+               "For .vdb: the grid to read (default: density, else the first one)");
   ImportOptions& options = arguments->options;
   const Option resolution =
       command.parsed("-r,--resolution", options.resolution, parse_resolution, "N",

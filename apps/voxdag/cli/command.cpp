@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <stdexcept>
 
+#include "cli/output_files.hpp"
+
 namespace voxdag::cli {
 namespace {
 
@@ -72,8 +74,13 @@ void Command::pass_on(std::function<void(std::vector<std::string>)> run) const {
 
 Option Command::text(const std::string& names, std::string& value, const std::string& shape,
                      const std::string& help) const {
+  const bool is_output = names == "-o,--output";
   return add_option(
-      names, [&value](const std::string& text) { value = text; }, shape, help);
+      names,
+      [&value, is_output](const std::string& text) {
+        value = is_output && text == "-" ? standard_output() : text;
+      },
+      shape, help);
 }
 
 Option Command::texts(const std::string& name, std::vector<std::string>& values,

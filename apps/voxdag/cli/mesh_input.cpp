@@ -46,6 +46,10 @@ MeshWithAppearance read_and_check(const std::string& file, bool with_appearance,
 }  // namespace
 
 void add_mesh_access_options(const Command& command, MeshAccess& access, const Option* mesh) {
+  const Option format = command.text(
+      "--format", access.format, "EXT",
+      "Read the mesh as if its name ended in .EXT: for standard input of formats that do not tell "
+      "themselves, such as OBJ");
   const Option outside = command.flag(
       "--allow-outside", access.allow_outside,
       "Let the mesh name textures, buffers and material libraries outside its own folder");
@@ -54,7 +58,7 @@ void add_mesh_access_options(const Command& command, MeshAccess& access, const O
       "Formats that assimp may read. safe: those whose importers survived fuzzing; any: all "
       "(default: safe)");
   if (mesh == nullptr) return;
-  for (const Option& option : {outside, assimp}) option.needs(*mesh);
+  for (const Option& option : {format, outside, assimp}) option.needs(*mesh);
 }
 
 Mesh read_mesh_file(const std::string& file, const MeshAccess& access, Session& session) {

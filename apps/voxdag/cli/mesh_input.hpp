@@ -18,6 +18,7 @@ struct MeshAccess {
   bool allow_outside = false;       ///< As ReadOptions::allow_outside.
   bool any_importer = false;        ///< As ReadOptions::any_assimp_importer.
   bool objects = false;             ///< As ReadOptions::objects.
+  std::string format;               ///< As ReadOptions::format.
   TransformRequest transform;       ///< Moves each mesh, by the customs of its format.
   MemoryBudget* memory = nullptr;   ///< The budget of ReadOptions::work.
   std::vector<OutputFile> outputs;  ///< Files that the command writes: no mesh may name them.
@@ -27,10 +28,12 @@ struct MeshAccess {
     options.allow_outside = allow_outside;
     options.any_assimp_importer = any_importer;
     options.objects = objects;
+    options.format = format;
   }
 };
 
-/// Adds --allow-outside and --assimp. `mesh` is the option that names the mesh, if it is optional.
+/// Adds --format, --allow-outside and --assimp. `mesh` is the option that names the mesh, if it is
+/// optional.
 void add_mesh_access_options(const Command& command, MeshAccess& access,
                              const Option* mesh = nullptr);
 

@@ -1,6 +1,7 @@
 #include "cli/output_files.hpp"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <map>
 
@@ -23,6 +24,15 @@ void check_input(const OutputFile& output, const std::string& input) {
 }
 
 }  // namespace
+
+std::string standard_output() {
+  static const int output = [] {
+    const int copy = dup(STDOUT_FILENO);
+    if (copy >= 0) dup2(STDERR_FILENO, STDOUT_FILENO);
+    return copy;
+  }();
+  return fmt::format("/proc/self/fd/{}", output);
+}
 
 fs::path canonical_output(const std::string& path) {
   std::error_code unknown;

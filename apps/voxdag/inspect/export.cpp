@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "cli/commands.hpp"
@@ -14,7 +15,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/file/model/scene_model.hpp"
-#include "voxdag/formats/exports/export_voxels.hpp"
+#include "voxdag/formats/exports/export_scene.hpp"
 #include "voxdag/formats/exports/grids/export_slices.hpp"
 
 namespace voxdag::cli {
@@ -22,33 +23,47 @@ namespace {
 
 struct ExportArguments {
   std::string output, look;
-  bool grey = false;
+  bool grey = false, watertight = false, manifold = false, merge = false;
   ExportOptions options;
   ExportContent content;
   std::optional<int> slices;  ///< Axis.
   ShownSceneArguments page;
 
-  bool is_vdb() const { return !slices && (output.ends_with(".vdb") || output.ends_with(".nvdb")); }
+  /// Returns the output with the extension of its format.
+  std::string name() const { return content.format.empty() ? output : "out." + content.format; }
+  bool is_vdb() const { return !slices && (name().ends_with(".vdb") || name().ends_with(".nvdb")); }
+  bool is_stl() const { return !slices && name().ends_with(".stl"); }
+  bool is_merged() const {
+    return !slices && (name().ends_with(".glb") || name().ends_with(".obj"));
+  }
   bool is_page() const { return !slices && is_page_output(output); }
   bool carries_colors() const {
-    return slices || export_has_colors(output, options.window.has_value());
+    return slices || export_has_colors(name(), options.window.has_value());
   }
 };
 
 /// Throws Error, before the file is read, if no output has this extension.
-void check_extension(const std::string& output) {
-  if (!can_export_to(output))
-    throw Error(
-        output, "",
-        fmt::format("cannot export to '{}': the extension must be {}, or .html; a folder "
-                    "ends in /",
-                    std::filesystem::path(output).extension().string(), export_extensions()));
+void check_extension(const ExportArguments& arguments) {
+  const std::string name = arguments.name();
+  if (!can_export_to(name))
+    throw Error(arguments.output, "",
+                fmt::format("cannot export to '{}': the extension must be {}, or .html; a folder "
+                            "ends in /. --format EXT is for outputs without an extension",
+                            std::filesystem::path(name).extension().string(), export_extensions()));
+}
+
+/// Returns the mesh of faces that the options ask for: STL files are for printing, which needs a
+/// manifold.
+FaceMesh face_mesh(const ExportArguments& arguments) {
+  if (arguments.manifold || (arguments.is_stl() && !arguments.watertight))
+    return FaceMesh::kManifold;
+  return arguments.merge ? FaceMesh::kFewest : FaceMesh::kWatertight;
 }
 
 void export_file(ExportArguments& arguments, Session& session) {
   if (arguments.is_page()) return export_page(arguments.output, arguments.page, session);
   if (!arguments.slices) {
-    check_extension(arguments.output);
+    check_extension(arguments);
     check_writable(arguments.output);
   } else if (can_export_to(arguments.output) || arguments.output.ends_with(".html")) {
     throw Error(arguments.output, "", "is the name of a file, and --slices writes a folder");
@@ -62,13 +77,18 @@ void export_file(ExportArguments& arguments, Session& session) {
   const std::optional<SceneModel> look = open_look(arguments.look, file, session);
   MemoryBudget memory = command_budget(arguments.page.memory_limit);
   arguments.options.memory = &memory;
+  arguments.options.faces = face_mesh(arguments);
+  std::vector<std::string> notes;
+  arguments.options.notes = &notes;
   if (!arguments.grey) arguments.options.look = look_of(look ? *look : file);
   if (arguments.slices)
     return export_slices(arguments.output, *arguments.slices, voxels, file.grid(),
                          arguments.options);
   const std::vector<std::filesystem::path> files =
-      export_voxels(arguments.output, voxels, file.grid(), arguments.content, arguments.options);
+      export_scene(arguments.output, voxels, file.metadata(), arguments.content, arguments.options,
+                   {&memory, &session.progress});
   session.bar.clear();
+  print_warnings(notes, session);
   if (files.size() == 1 || session.quiet) return;
   for (const std::filesystem::path& part : files) fmt::print("{}\n", part.string());
 }
@@ -84,12 +104,64 @@ void add_page_options(const Command& command, ExportArguments& arguments) {
           "on an output that is neither a page nor .vdb or .nvdb: others take less than 100 MB");
 }
 
+void add_mesh_options(const Command& command, ExportArguments& arguments) {
+  const auto has_faces = [&arguments] { return arguments.is_merged() || arguments.is_stl(); };
+  const auto is_merged = [&arguments] { return arguments.is_merged(); };
+  constexpr const char *kNoFaces = "on an output that is neither .glb, .obj nor .stl",
+                       *kNotMerged = "on an output that is neither .glb nor .obj";
+  const Option watertight =
+      command
+          .flag("--watertight", arguments.watertight,
+                "With .glb, .obj and .stl: no corner lies inside an edge of another triangle (the "
+                "default of .glb and .obj)")
+          .only_if(has_faces, kNoFaces);
+  const Option manifold =
+      command
+          .flag("--manifold", arguments.manifold,
+                "With .glb, .obj and .stl: each edge has two triangles, each corner one fan. Where "
+                "voxels only touch, corners move by 1/8 voxel (the default of .stl)")
+          .only_if(has_faces, kNoFaces)
+          .not_with(watertight);
+  command
+      .flag("--merge", arguments.merge,
+            "With .glb and .obj: the fewest triangles; corners can lie inside edges of others, "
+            "which can show as cracks")
+      .only_if(is_merged, kNotMerged)
+      .not_with(watertight)
+      .not_with(manifold);
+  command
+      .flag("--texture", arguments.options.texture,
+            "With .glb and .obj: write colours as a texture, for programs that show no colours of "
+            "corners. OUT.mtl and OUT.png lie beside OUT.obj")
+      .only_if(is_merged, kNotMerged);
+  command
+      .parsed(
+          "--up", arguments.content.up,
+          [](const std::string& text) {
+            if (text != "y" && text != "z")
+              throw std::invalid_argument(fmt::format("\"{}\" is neither y nor z", text));
+            return text[0];
+          },
+          "y|z",
+          "The axis that points up in the output: the scene is turned about x if another one does "
+          "in FILE (default: y for .glb and .schem, z for .vox and .stl, if FILE or the format of "
+          "its source says which axis points up; others are not turned)")
+      .only_if([&arguments] { return !arguments.is_page() && !arguments.slices; },
+               "on a page or slices");
+}
+
 void check_outputs(const ExportArguments& arguments, const Session& session) {
   if (arguments.is_page()) return check_page_output(arguments.output, session);
   std::string beside = arguments.output + ".json";
   if (arguments.output.ends_with(".voxel.json"))
     beside = arguments.output.substr(0, arguments.output.size() - 4) + "bin";
-  check_distinct({{"--output", arguments.output}, {"--output", beside}}, session);
+  std::vector<OutputFile> outputs{{"--output", arguments.output}, {"--output", beside}};
+  if (arguments.options.texture && arguments.name().ends_with(".obj"))
+    for (const char* extension : {".mtl", ".png"})
+      outputs.push_back(
+          {"--texture",
+           std::filesystem::path(arguments.output).replace_extension(extension).string()});
+  check_distinct(outputs, session);
 }
 
 }  // namespace
@@ -128,6 +200,8 @@ void add_export_command(const Command& program, Session& session) {
             "--slices: a folder. Pages that show a DAG: .html (one "
             "file, also offline) or FOLDER/ (with the scene, for any web server)")
       .required();
+  command.text("--format", arguments->content.format, "EXT",
+               "Write OUT as if its name ended in .EXT: for standard output (-o -)");
   const auto is_no_page = [arguments] { return !arguments->is_page(); };
   command
       .parsed("--window", arguments->options.window, parse_window, "X0,Y0,Z0,X1,Y1,Z1",
@@ -136,7 +210,7 @@ void add_export_command(const Command& program, Session& session) {
   const Option faces = command
                            .flag("--faces", arguments->content.ply_faces,
                                  "With .ply: write the outer faces of the voxels, not points")
-                           .only_if([arguments] { return arguments->output.ends_with(".ply"); },
+                           .only_if([arguments] { return arguments->name().ends_with(".ply"); },
                                     "on an output that does not end in .ply");
   command
       .parsed("--slices", arguments->slices, parse_axis, "AXIS",
@@ -155,6 +229,7 @@ void add_export_command(const Command& program, Session& session) {
       .only_if(is_no_page, "on a page: see --drop-attributes")
       .only_if(carries_look, kCarriesNone)
       .not_with(look);
+  add_mesh_options(command, *arguments);
   add_page_options(command, *arguments);
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {

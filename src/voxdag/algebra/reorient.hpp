@@ -1,18 +1,10 @@
 #pragma once
 /// Mirrors and rotates the voxels of a grid.
+#include "voxdag/core/orientation.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
-
-/// One of the 48 symmetries of a cube: coordinate a of a voxel of the result is coordinate
-/// source_axis[a] of the source's voxel, counted from the other side of the grid if is_flipped[a].
-struct Orientation {
-  int source_axis[3] = {0, 1, 2};  ///< A permutation.
-  bool is_flipped[3] = {};
-
-  friend bool operator==(const Orientation&, const Orientation&) = default;
-};
 
 /// Returns the orientation that mirrors along an axis, 0 to 2.
 Orientation mirrored(int axis);

@@ -53,10 +53,9 @@ Batch map_batch(const SharedMesh& mesh, const Grid& grid, const CellFinder& find
     pieces.clear();
     const Vec3<Vec3f> corners{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
     if (!is_finite(corners.x) || !is_finite(corners.y) || !is_finite(corners.z)) continue;
-    quantize_triangle(grid,
-                      {mesh.position(corners.x), mesh.position(corners.y),
-                       mesh.position(corners.z)},
-                      pieces);
+    quantize_triangle(
+        grid, {mesh.position(corners.x), mesh.position(corners.y), mesh.position(corners.z)},
+        pieces);
     for (const QuantizedTriangle& piece : pieces) {
       const auto index = static_cast<std::uint32_t>(batch.triangles.size());
       const std::size_t before = batch.entries.size();

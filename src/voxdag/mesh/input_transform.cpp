@@ -69,8 +69,10 @@ FormatCustom custom_of(const std::string& file_name) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const char* packed : {".gz", ".zst"})
     if (name.ends_with(packed)) name.resize(name.size() - std::string_view(packed).size());
-  if (name.ends_with(".gltf") || name.ends_with(".glb")) return {1, "m"};
-  for (const char* ending : {".obj", ".ply", ".off", ".dae", ".fbx", ".vdb"})
+  for (const char* ending : {".gltf", ".glb", ".dae"})
+    if (name.ends_with(ending)) return {1, "m"};
+  if (name.ends_with(".3mf")) return {2, "mm"};
+  for (const char* ending : {".obj", ".ply", ".off", ".fbx", ".vdb"})
     if (name.ends_with(ending)) return {};
   return {2, ""};
 }
@@ -168,11 +170,9 @@ void move_mesh(MeshWithAppearance& source, const InputTransform& transform, Work
       bounds.extend(moved);
     }
   }
-  const Vec3d origin =
-      float_origin({static_cast<Vec3d>(bounds.lo), static_cast<Vec3d>(bounds.hi)});
-  polled_for(mesh.vertices.size(), 4096, work, "move", [&](std::size_t i) {
-    mesh.vertices[i] = transform.vertex(mesh.position(i), origin);
-  });
+  const Vec3d origin = float_origin({static_cast<Vec3d>(bounds.lo), static_cast<Vec3d>(bounds.hi)});
+  polled_for(mesh.vertices.size(), 4096, work, "move",
+             [&](std::size_t i) { mesh.vertices[i] = transform.vertex(mesh.position(i), origin); });
   mesh.origin = origin;
   Appearance& appearance = source.appearance;
   polled_for(appearance.normals.size(), 4096, work, "move", [&](std::size_t i) {

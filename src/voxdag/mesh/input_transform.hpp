@@ -18,7 +18,7 @@ struct FormatCustom {
   std::string unit;  ///< A unit of TransformRequest; empty: the format does not say it.
 };
 /// Returns the customs of a format by the end of the file's name: z is up in .stl, .3mf and files
-/// of points and volumes, y in others; .gltf and .glb are in metres.
+/// of points and volumes, y in others; .gltf, .glb and .dae are in metres, .3mf in millimetres.
 FormatCustom custom_of(const std::string& file_name);
 
 /// What a user asks for. Texts are those of the options and of SceneMetadata::build.
@@ -49,7 +49,8 @@ class InputTransform {
   double factor() const { return factor_; }
   Vec3d turned(Vec3d v) const { return turn_[0] * v.x + turn_[1] * v.y + turn_[2] * v.z; }
   Vec3d point(Vec3d p) const { return turned(p) * factor_ + translate_; }
-  /// Returns where a point is moved, as a vertex measured from `origin`. All meshes are moved by it.
+  /// Returns where a point is moved, as a vertex measured from `origin`. All meshes are moved by
+  /// it.
   Vec3f vertex(Vec3d p, Vec3d origin) const { return static_cast<Vec3f>(point(p) - origin); }
   /// Returns whether axes become axes, so that voxels become voxels.
   bool keeps_axes() const;

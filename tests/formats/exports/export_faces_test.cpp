@@ -8,10 +8,14 @@
 #include <sstream>
 
 #include "colored_scene.hpp"
+#include "read_back.hpp"
 #include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/core/srgb.hpp"
+#include "voxdag/core/vec2.hpp"
+#include "voxdag/formats/exports/faces/manifold_faces.hpp"
 #include "voxdag/formats/exports/faces/rectangles.hpp"
+#include "voxdag/image/decode.hpp"
 
 namespace voxdag {
 namespace {
@@ -243,15 +247,212 @@ TEST(ExportStl, TheMeshIsClosed) {
   EXPECT_EQ(areas_of(triangles), areas_of(scene.view(), whole_grid(5)));
 }
 
-TEST(ExportStl, RefusesGridsThatFloatsCannotPlace) {
+/// Returns the triangles of an STL file, as written.
+std::vector<std::array<Vec3f, 3>> stl_triangles(const std::string& bytes) {
+  std::vector<std::array<Vec3f, 3>> triangles(read_at<std::uint32_t>(bytes, 80));
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    triangles[i] = read_at<std::array<Vec3f, 3>>(bytes, 84 + 50 * i + 12);
+  return triangles;
+}
+
+TEST(ExportStl, AFarGridHasALocalOriginAndTheOffsetIsSaid) {
   const TempDir dir;
   ExportedScene scene(6, 100);
+  std::vector<std::string> notes;
+  ExportOptions options;
+  options.notes = &notes;
+  options.window = kWindow;
+  scene.grid.origin = {0, 0, 0};
+  export_stl(dir / "near.stl", scene.view(), scene.grid, options);
+  EXPECT_TRUE(notes.empty());
+  EXPECT_EQ(dir.count(), 1);
   scene.grid.origin.x = 1e6;
-  EXPECT_EQ(error_of([&] { export_stl(dir / "v.stl", scene.view(), scene.grid); }),
-            (dir / "v.stl").string() +
-                ": STL has float coordinates, which are too coarse for this grid's place in the "
-                "world: export .obj, .ply or .glb");
-  EXPECT_EQ(dir.count(), 0);
+  export_stl(dir / "far.stl", scene.view(), scene.grid, options);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("offset 1000000.75 0.25 1.5"), std::string::npos) << notes[0];
+  EXPECT_EQ(placement_of(dir / "far.stl")["offset"], nlohmann::json({1000000.75, 0.25, 1.5}));
+  const auto near = stl_triangles(read_text(dir / "near.stl"));
+  const auto far = stl_triangles(read_text(dir / "far.stl"));
+  ASSERT_EQ(near.size(), far.size());
+  for (std::size_t i = 0; i < near.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_EQ(far[i][c] + Vec3f(0.75f, 0.25f, 1.5f), near[i][c]);
+  // Voxels that are too small for floats are refused.
+  scene.grid.voxel_size = 1e-300;
+  EXPECT_NE(error_of([&] {
+              export_stl(dir / "small.stl", scene.view(), scene.grid);
+            }).find("cannot hold voxels of this size"),
+            std::string::npos);
+}
+
+using Corner3 = std::array<double, 3>;
+using Triangles3 = std::vector<std::array<Corner3, 3>>;
+
+/// Returns the numbers of triangles that edges have; expects as many in each direction.
+std::map<int, int> edges_by_triangles(const Triangles3& triangles) {
+  std::map<std::pair<Corner3, Corner3>, int> edges;
+  for (const auto& t : triangles)
+    for (std::size_t c = 0; c < 3; ++c) ++edges[{t[c], t[(c + 1) % 3]}];
+  std::map<int, int> counts;
+  for (const auto& [edge, count] : edges) {
+    const auto back = edges.find({edge.second, edge.first});
+    EXPECT_EQ(back == edges.end() ? 0 : back->second, count);
+    ++counts[2 * count];
+  }
+  return counts;
+}
+
+/// Expects that the triangles of each corner form one fan.
+void expect_one_fan_each(const Triangles3& triangles) {
+  std::map<Corner3, std::map<Corner3, Corner3>> next;  // Around a corner.
+  for (const auto& t : triangles)
+    for (std::size_t c = 0; c < 3; ++c) next[t[c]][t[(c + 1) % 3]] = t[(c + 2) % 3];
+  for (const auto& [corner, ring] : next) {
+    Corner3 at = ring.begin()->first;
+    std::size_t steps = 0;
+    do {
+      at = ring.at(at);
+      ++steps;
+    } while (at != ring.begin()->first && steps <= ring.size());
+    EXPECT_EQ(steps, ring.size());
+  }
+}
+
+double volume_of(const Triangles3& triangles) {
+  double volume = 0;
+  for (const auto& [a, b, c] : triangles)
+    volume +=
+        dot(Vec3d{a[0], a[1], a[2]}, cross(Vec3d{b[0], b[1], b[2]}, Vec3d{c[0], c[1], c[2]})) / 6;
+  return volume;
+}
+
+Triangles3 triangles_of(const VoxelSet& voxels, const Box3i& window, FaceMesh faces) {
+  Triangles3 triangles;
+  const auto add = [&](const FacePolygon& polygon) {
+    for (const auto& corners : polygon.triangles) {
+      auto& triangle = triangles.emplace_back();
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Vec3d p = polygon.corners[corners[c]];
+        triangle[c] = {p.x, p.y, p.z};
+      }
+    }
+  };
+  FacePolygon polygon;
+  if (faces == FaceMesh::kManifold)
+    for_each_manifold_face(
+        voxels, window, nullptr, [](std::uint64_t) {}, add);
+  else
+    for_each_rectangle(voxels, window, nullptr, true, nullptr, [&](const FaceRectangle& r) {
+      set_cut_rectangle(r, polygon);
+      add(polygon);
+    });
+  return triangles;
+}
+
+TEST(FaceMeshes, WatertightRectanglesHaveNoCornersInsideEdges) {
+  for (const int count : {40, 3000}) {
+    const ExportedScene scene(5, count);
+    for (const Box3i& window : {whole_grid(5), kWindow}) {
+      const Triangles3 triangles = triangles_of(scene.view(), window, FaceMesh::kWatertight);
+      for (const auto& [uses, edges] : edges_by_triangles(triangles)) EXPECT_EQ(uses % 2, 0);
+      std::uint64_t voxels = 0;
+      for (const Vec3i v : scene.voxels) voxels += is_inside(v, window) ? 1 : 0;
+      EXPECT_NEAR(volume_of(triangles), static_cast<double>(voxels), 1e-6);
+      for (const auto& t : triangles) {  // None is degenerate.
+        Vec3d p[3];
+        for (std::size_t c = 0; c < 3; ++c) p[c] = {t[c][0], t[c][1], t[c][2]};
+        EXPECT_GE(length(cross(p[1] - p[0], p[2] - p[0])), 1);
+      }
+    }
+  }
+}
+
+TEST(FaceMeshes, ManifoldsHaveTwoTrianglesAnEdgeAndOneFanACorner) {
+  for (const int count : {2000, 9000, 20000}) {
+    const ExportedScene scene(5, count);
+    for (const Box3i& window : {whole_grid(5), kWindow}) {
+      const Triangles3 triangles = triangles_of(scene.view(), window, FaceMesh::kManifold);
+      EXPECT_EQ(edges_by_triangles(triangles).size(), 1u);
+      EXPECT_EQ(edges_by_triangles(triangles).begin()->first, 2);
+      expect_one_fan_each(triangles);
+      EXPECT_GT(volume_of(triangles), 0);
+    }
+  }
+}
+
+TEST(FaceMeshes, AManifoldOfVoxelsThatShareFacesStaysOnTheLattice) {
+  const Svdag dag = brute_svdag(3, {{1, 1, 1}, {2, 1, 1}, {2, 2, 1}});
+  for (const auto& triangle : triangles_of(dag.view(), whole_grid(3), FaceMesh::kManifold))
+    for (const Corner3& corner : triangle)
+      for (const double c : corner) EXPECT_EQ(c, std::round(c));
+}
+
+TEST(FaceMeshes, ATextureHasTheColorsOfTheVoxels) {
+  const TempDir dir;
+  const ColoredScene scene(6);
+  ExportOptions options = scene.options;
+  options.texture = true;
+  export_glb(dir / "v.glb", scene.view(), scene.grid, options);
+  export_obj(dir / "v.obj", scene.view(), scene.grid, options);
+  EXPECT_EQ(dir.count(), 4);
+  std::map<std::array<int, 3>, double> expected, in_glb, in_obj;
+  for_each_rectangle(scene.view(), whole_grid(6), nullptr, false, nullptr,
+                     [&](const FaceRectangle& r) {
+                       Vec3i voxel = r.lo;
+                       if ((static_cast<int>(r.face) & 1) != 0) --voxel[face_axis(r.face)];
+                       const Value8 color = scene.value(voxel);
+                       expected[{color.x, color.y, color.z}] += 1;
+                     });
+  const DecodedImage image = read_image(dir / "v.png");
+  const auto color_at = [&](double u, double v) {  // v points down.
+    const auto rgba =
+        image.pixel(static_cast<int>(u * image.width()), static_cast<int>(v * image.height()));
+    return std::array<int, 3>{rgba[0] / 257, rgba[1] / 257, rgba[2] / 257};
+  };
+  const Glb glb(read_text(dir / "v.glb"));
+  const auto& view = glb.json["bufferViews"][2];
+  std::string png = read_text(dir / "v.png");
+  EXPECT_EQ(glb.data.substr(view["byteOffset"], png.size()), png);
+  const auto count = glb.json["accessors"][1]["count"].get<std::size_t>();
+  for (std::size_t i = 0; i < count; i += 3) {
+    std::array<Vec3d, 3> p;
+    Vec2f uv;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto index = read_at<std::uint32_t>(glb.data, glb.place(1, i + c, 4));
+      p[c] = Vec3d(read_at<Vec3f>(glb.data, glb.place(0, index, 12)));
+      uv = read_at<Vec2f>(glb.data, glb.place(2, index, 8));
+    }
+    const double side = scene.grid.voxel_size;
+    in_glb[color_at(uv.x, uv.y)] += length(cross(p[1] - p[0], p[2] - p[0])) / (2 * side * side);
+  }
+  EXPECT_EQ(in_glb, expected);
+  std::vector<Vec3d> places;
+  std::vector<std::array<int, 3>> colors;
+  std::istringstream lines(read_text(dir / "v.obj"));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string kind;
+    words >> kind;
+    double x = 0, y = 0, z = 0;
+    if (kind == "v") {
+      words >> x >> y >> z;
+      places.push_back({x, y, z});
+    } else if (kind == "vt") {
+      words >> x >> y;
+      colors.push_back(color_at(x, 1 - y));
+    } else if (kind == "f") {
+      std::array<Vec3d, 3> p;
+      std::size_t corner = 0, uv = 0;
+      for (char slash = 0; Vec3d & q : p) {
+        words >> corner >> slash >> uv;
+        q = places.at(corner - 1);
+      }
+      const double side = scene.grid.voxel_size;
+      in_obj[colors.at(uv - 1)] += length(cross(p[1] - p[0], p[2] - p[0])) / (2 * side * side);
+    }
+  }
+  EXPECT_EQ(in_obj, expected);
+  EXPECT_EQ(read_text(dir / "v.mtl"), "newmtl voxels\nKd 1 1 1\nmap_Kd v.png\n");
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ void for_each_dense_strip(const VoxelSet& voxels, const Box3i& window, const std
 void export_npy_coordinates(const std::filesystem::path& path, const VoxelSet& voxels,
                             const Grid& grid, const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
-  LookReader look(options.look);
+  LookReader look = options.look_reader();
   const CoordinateRows row(look);
   const std::uint64_t count = count_for_export(path, voxels, window, row.bytes, options);
   NpyWriter writer(path, row.dtype, row.shape, row.item_bytes, count);
@@ -132,7 +132,7 @@ void export_npy_coordinates(const std::filesystem::path& path, const VoxelSet& v
   });
   writer.write_bytes(rows.data(), rows.size());
   writer.commit();
-  write_placement(path, grid, window, row.layout);
+  write_placement(path, grid, window, row.layout, options);
 }
 
 void export_npy_dense(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
@@ -147,7 +147,7 @@ void export_npy_dense(const std::filesystem::path& path, const VoxelSet& voxels,
                          writer.write_bytes(bytes.data(), bytes.size());
                        });
   writer.commit();
-  write_placement(path, grid, window, kNpyDense);
+  write_placement(path, grid, window, kNpyDense, options);
 }
 
 void export_raw(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
@@ -160,7 +160,7 @@ void export_raw(const std::filesystem::path& path, const VoxelSet& voxels, const
                          file.write(std::span<const std::uint8_t>(bytes));
                        });
   file.commit();
-  write_placement(path, grid, window, kRawDense);
+  write_placement(path, grid, window, kRawDense, options);
 }
 
 }  // namespace voxdag

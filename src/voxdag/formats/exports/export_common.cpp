@@ -83,14 +83,14 @@ void refuse_pipe(const std::filesystem::path& path) {
 }
 
 void write_placement(const std::filesystem::path& path, const Grid& grid, const Box3i& window,
-                     const ArrayLayout& layout) {
+                     const ArrayLayout& layout, const ExportOptions& options) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return;
-  write_placement_file(path.string() + ".json", grid, window, layout);
+  write_placement_file(path.string() + ".json", grid, window, layout, options);
 }
 
 void write_placement_file(const std::filesystem::path& path, const Grid& grid, const Box3i& window,
-                          const ArrayLayout& layout) {
+                          const ArrayLayout& layout, const ExportOptions& options) {
   const Vec3i lo = window.lo, hi = window.hi;
   nlohmann::ordered_json json;
   json["grid"] = {{"resolution", grid.resolution()},
@@ -107,6 +107,11 @@ void write_placement_file(const std::filesystem::path& path, const Grid& grid, c
     for (const char axis : layout.axes)
       json["array"]["shape"].push_back(hi[axis - 'x'] - lo[axis - 'x']);
   }
+  if (layout.offset) json["offset"] = {layout.offset->x, layout.offset->y, layout.offset->z};
+  if (const auto& turn = options.turn)
+    json["turned"] = {{"up", std::string(1, turn->up)},
+                      {"from_up", std::string(1, turn->from_up)},
+                      {"origin_before", {turn->origin.x, turn->origin.y, turn->origin.z}}};
   json["placement"] =
       std::string(
           "voxel (i, j, k) is the cube from grid.origin + (i, j, k) * grid.voxel_size, "

@@ -55,15 +55,17 @@ struct ArrayLayout {
   /// The coordinates that the file gives voxel window.lo. Default: (0, 0, 0) in a dense array,
   /// window.lo in other files.
   std::optional<Vec3i> lo_in_file = {};
+  std::optional<Vec3d> offset = {};  ///< What must be added to the coordinates of the file.
 };
 
-/// Writes PATH.json: the grid, the window, the layout, and how they place a voxel in the world.
+/// Writes PATH.json: the grid, the window, the layout, how they place a voxel in the world, and
+/// options.turn.
 /// Writes nothing if `path` is a pipe or device.
 void write_placement(const std::filesystem::path& path, const Grid& grid, const Box3i& window,
-                     const ArrayLayout& layout);
+                     const ArrayLayout& layout, const ExportOptions& options);
 
 /// Writes the placement to `file`.
 void write_placement_file(const std::filesystem::path& file, const Grid& grid, const Box3i& window,
-                          const ArrayLayout& layout);
+                          const ArrayLayout& layout, const ExportOptions& options);
 
 }  // namespace voxdag

@@ -188,7 +188,7 @@ void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels
                        const ExportOptions& options) {
   refuse_pipe(path);
   const Box3i window = export_window(path, voxels, options);
-  LookReader look(options.look);
+  LookReader look = options.look_reader();
   const std::uint64_t vertex_bytes = sizeof(Vec3f) + (look.has_normals() ? sizeof(Vec3f) : 0) +
                                      (look.has_colors() ? sizeof(Value8) : 0) +
                                      (look.has_materials() ? sizeof(std::uint16_t) : 0);
@@ -210,7 +210,7 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
   refuse_pipe(path);
   const Box3i window = export_window(path, voxels, options);
   const std::uint64_t count = count_for_export(path, voxels, window, 0, options);
-  LookReader look(options.look);
+  LookReader look = options.look_reader();
   const bool by_voxel = !look.is_empty();
   PlyFile file(path, grid, content_of(look, true));
   // In PLY all vertices come before all faces. So two walks compute the same surfaces.

@@ -68,6 +68,7 @@ struct ExportFormat {
   std::string_view ending;
   Files (*write)(const Request&);
   bool has_colors;
+  char up = 0;  ///< The axis that points up by custom; 0: none.
 };
 
 /// ".spc.npy" comes before ".npy": the first ending that matches counts.
@@ -75,21 +76,21 @@ constexpr ExportFormat kExportFormats[] = {{".spc.npy", dag_file<export_spc>, fa
                                            {".npy", npy, true},
                                            {".raw", one_file<export_raw>, false},
                                            {".ply", ply, true},
-                                           {".glb", one_file<export_glb>, true},
+                                           {".glb", one_file<export_glb>, true, 'y'},
                                            {".obj", one_file<export_obj>, true},
-                                           {".stl", one_file<export_stl>, false},
-                                           {".vox", vox, true},
+                                           {".stl", one_file<export_stl>, false, 'z'},
+                                           {".vox", vox, true, 'z'},
                                            {".binvox", one_file<export_binvox>, false},
-                                           {".schem", one_file<export_schem>, true},
+                                           {".schem", one_file<export_schem>, true, 'y'},
                                            {".voxel.json", dag_file<export_playcanvas>, false},
                                            {".vdb", one_file<export_vdb>, true},
                                            {".nvdb", one_file<export_vdb>, true}};
 
 /// Returns the format of a file, or null.
-const ExportFormat* format_of(const std::filesystem::path& path) {
-  const std::string name = path.filename().string();
-  for (const ExportFormat& format : kExportFormats)
-    if (name.size() > format.ending.size() && name.ends_with(format.ending)) return &format;
+const ExportFormat* format_of(const std::filesystem::path& path, const std::string& format = {}) {
+  const std::string name = format.empty() ? path.filename().string() : "a." + format;
+  for (const ExportFormat& known : kExportFormats)
+    if (name.size() > known.ending.size() && name.ends_with(known.ending)) return &known;
   return nullptr;
 }
 
@@ -106,6 +107,11 @@ std::string export_extensions() {
   return text;
 }
 
+std::optional<char> custom_up(const std::filesystem::path& path, const ExportContent& content) {
+  const ExportFormat* const format = format_of(path, content.format);
+  return format == nullptr || format->up == 0 ? std::nullopt : std::optional(format->up);
+}
+
 bool export_has_colors(const std::filesystem::path& path, bool has_window) {
   const ExportFormat* const format = format_of(path);
   return format != nullptr && format->has_colors && !(format->write == npy && has_window);
@@ -115,11 +121,12 @@ std::vector<std::filesystem::path> export_voxels(const std::filesystem::path& pa
                                                  const VoxelSet& voxels, const Grid& grid,
                                                  const ExportContent& content,
                                                  const ExportOptions& options) {
-  const ExportFormat* const format = format_of(path);
+  const ExportFormat* const format = format_of(path, content.format);
   if (format == nullptr)
     throw Error(path.string(), "",
-                "cannot export to '" + path.extension().string() + "': the extension must be " +
-                    export_extensions());
+                "cannot export to '" +
+                    (content.format.empty() ? path.extension().string() : content.format) +
+                    "': the extension must be " + export_extensions());
   return format->write({path, voxels, grid, content, options});
 }
 

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "voxdag/algebra/reorient.hpp"
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
@@ -20,6 +21,9 @@ struct FilePlacement {
   Box3i window;                      ///< Of the grid's voxels.
   Vec3i lo_in_file;                  ///< The coordinates of voxel window.lo in the file.
   std::array<int, 3> axes{0, 1, 2};  ///< The grid's axes of x, y and z in the file.
+  /// How the export turned the scene, and the axis that points up without that turn.
+  Orientation orientation;
+  std::optional<char> up;
 };
 
 template <class T>
@@ -41,6 +45,13 @@ FilePlacement parse_placement(const nlohmann::json& json, bool is_folder) {
                     kSubvoxels / voxel_size};
   placement.window = {vector_of<std::int32_t>(window.at("lo")),
                       vector_of<std::int32_t>(window.at("hi"))};
+  if (json.contains("turned")) {
+    const auto up = json["turned"].at("from_up").get<std::string>();
+    if (up != "y" && up != "z") throw Error("its axis that points up is neither y nor z");
+    placement.up = up[0];
+    placement.orientation = rotated(0, up == "y" ? 1 : -1);
+    placement.grid.origin = vector_of<double>(json["turned"].at("origin_before"));
+  }
   const nlohmann::json& array = json.at("array");
   if (window.contains("lo_in_file"))
     placement.lo_in_file = vector_of<std::int32_t>(window.at("lo_in_file"));
@@ -71,6 +82,7 @@ class PlacedVoxels : public VoxelSource {
   bool has_palette() const override { return source_->has_palette(); }
   bool has_place() const override { return true; }
   std::optional<Grid> grid() const override { return placement_.grid; }
+  std::optional<char> up() const override { return placement_.up; }
   std::vector<std::string> warnings() const override { return source_->warnings(); }
   void visit_all(const VisitBatch& visit) const override {
     const Vec3d first = static_cast<Vec3d>(source_->first_voxel());
@@ -94,7 +106,8 @@ class PlacedVoxels : public VoxelSource {
             name_, "window",
             "does not hold all voxels of the file, so it belongs to another one: remove it");
     }
-    return place;
+    if (!placement_.up) return place;
+    return Vec3d(source_cell(placement_.orientation, Vec3i(place), placement_.grid.levels));
   }
 
   std::unique_ptr<VoxelSource> source_;

@@ -2,7 +2,30 @@
 
 #include <utility>
 
+#include "voxdag/core/error.hpp"
+
 namespace voxdag {
+
+void check_grid_options(const VoxelSource& source, const ImportOptions& options) {
+  const bool sets_place = options.voxel_size || options.origin;
+  if (source.has_points()) {
+    if (!options.resolution && !options.voxel_size && !source.grid())
+      throw Error("", "", "holds points, which need -r or --voxel-size");
+    if (options.resolution && options.voxel_size)
+      throw Error("", "", "holds points; of -r and --voxel-size one is enough");
+    if (options.origin && (options.bounds || (!options.voxel_size && !options.resolution)))
+      throw Error("", "",
+                  "holds points; --origin goes with -r or --voxel-size, and not with --bounds");
+  } else if (options.bounds) {
+    throw Error("", "", "holds voxels; --bounds is for points");
+  } else if (options.snap || options.padding != 0 || options.center) {
+    throw Error("", "", "holds voxels; --snap, --padding and --center are for points");
+  } else if (sets_place && source.has_place()) {
+    throw Error("", "",
+                "says itself where its voxels lie: --voxel-size and --origin are for files that do "
+                "not");
+  }
+}
 
 ImportedModel import_model(const VoxelSource& source, const ImportOptions& options,
                            const std::string& name, Work work, const TransformRequest& transform) {
@@ -11,6 +34,7 @@ ImportedModel import_model(const VoxelSource& source, const ImportOptions& optio
   metadata.grid = result.grid;
   metadata.source = {name, result.read, 0};
   metadata.build = {{"cover", "imported"}};
+  if (const std::optional<char> up = source.up()) metadata.build["up"] = std::string(1, *up);
   add_settings(transform, metadata.build);
   if (result.attributes.view().has_colors()) {
     metadata.attributes.resolution = result.grid.resolution();

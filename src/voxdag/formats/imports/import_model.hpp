@@ -16,6 +16,9 @@ struct ImportedModel {
   std::uint64_t not_finite = 0;  ///< Points that are not finite, which are left out.
 };
 
+/// Throws Error, without a file, for options that the kind of source does not have, or needs.
+void check_grid_options(const VoxelSource& source, const ImportOptions& options);
+
 /// Imports a source with import_voxels(). The metadata call it `name` and have `transform`, which
 /// moved it. Throws Error, OverMemory and Cancelled.
 ImportedModel import_model(const VoxelSource& source, const ImportOptions& options,

@@ -86,6 +86,7 @@ class TurnedVoxels final : public DerivedSource {
   }
 
   bool has_place() const override { return source_->has_place(); }
+  std::optional<char> up() const override { return source_->up(); }
   std::optional<Grid> grid() const override { return grid_; }
   void visit_all(const VisitBatch& visit) const override {
     visit_moved(visit, [this](Vec3d voxel) {
@@ -133,6 +134,7 @@ class JoinedSource final : public VoxelSource {
                        [](const auto& source) { return source->has_palette(); });
   }
   bool has_place() const override { return sources_[0]->has_place(); }
+  std::optional<char> up() const override { return sources_[0]->up(); }
   std::optional<Grid> grid() const override { return grid_; }
   CoordinateError coordinate_error() const override {
     CoordinateError most = sources_[0]->coordinate_error();

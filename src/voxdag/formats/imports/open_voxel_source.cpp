@@ -4,9 +4,11 @@
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/formats/imports/file_placement.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
+#include "voxdag/formats/input_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -46,32 +48,79 @@ constexpr SourceFormat kSourceFormats[] = {
     {".nii.gz", true,
      [](const Path& path, const Options& options) { return open_nifti(path, options.threshold); }},
     {".vdb", true,
-     [](const Path& path, const Options& options) { return open_vdb(path, options.threshold); }},
+     [](const Path& path, const Options& options) {
+       return open_vdb(path, options.threshold, options.grid);
+     }},
     {".vox", false, [](const Path& path, const Options&) { return open_vox(path); }},
 };
 
-std::unique_ptr<VoxelSource> open_by_name(const Path& path, const Options& options) {
+/// Opens `path`, whose format the end of `name` tells.
+std::unique_ptr<VoxelSource> open_by_name(const Path& path, std::string name,
+                                          const Options& options) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return open_png_slices(path, options.threshold);
-  std::string name = path.string(), endings;
+  std::string endings;
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const SourceFormat& format : kSourceFormats) {
     if (name.ends_with(format.ending)) {
       if (options.threshold && !format.has_threshold)
         throw Error(path.string(), "", "has no values to compare with a threshold");
+      if (!options.grid.empty() && format.ending != std::string_view(".vdb"))
+        throw Error(path.string(), "", "has no grids with names: --grid is for .vdb files");
       return format.open(path, options);
     }
     endings += std::string(endings.empty() ? "" : ", ") + format.ending;
   }
   if (name.ends_with(".laz")) throw Error(path.string(), "", kCompressedLas);
+  if (path != name && name.find('.') == name.npos)
+    throw Error(path.string(), "", "has no ending that tells its format: --format does");
   throw Error(path.string(), "", "is none of " + endings + ", or a folder of .png files");
+}
+
+/// The source of an unpacked file. Errors name the file that was given.
+class UnpackedSource : public VoxelSource {
+ public:
+  UnpackedSource(Path given, InputFile input, const std::string& name, const Options& options)
+      : given_(std::move(given)),
+        input_(std::move(input)),
+        source_(with_file_name(given_.string(),
+                               [&] { return open_by_name(input_.path(), name, options); })) {}
+
+  bool has_points() const override { return source_->has_points(); }
+  bool has_colors() const override { return source_->has_colors(); }
+  CoordinateError coordinate_error() const override { return source_->coordinate_error(); }
+  bool has_palette() const override { return source_->has_palette(); }
+  std::optional<Grid> grid() const override { return source_->grid(); }
+  bool has_place() const override { return source_->has_place(); }
+  Vec3l first_voxel() const override { return source_->first_voxel(); }
+  std::optional<char> up() const override { return source_->up(); }
+  std::vector<std::string> warnings() const override { return source_->warnings(); }
+  void visit_all(const VisitBatch& visit) const override {
+    with_file_name(given_.string(), [&] { source_->visit_all(visit); });
+  }
+
+ private:
+  Path given_;
+  InputFile input_;
+  std::unique_ptr<VoxelSource> source_;
+};
+
+std::unique_ptr<VoxelSource> open_input_file(const Path& path, const Options& options) {
+  const std::string ending = options.format.empty() ? "" : "." + options.format;
+  // The reader of NIfTI unpacks as it reads.
+  if (const std::string name = path.string() + ending; name.ends_with(".nii.gz"))
+    return open_by_name(path, name, options);
+  InputFile input(path, options.work);
+  const std::string name = input.name().string() + ending;
+  if (!input.is_in_memory()) return open_by_name(path, name, options);
+  return std::make_unique<UnpackedSource>(path, std::move(input), name, options);
 }
 
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& options) {
-  std::unique_ptr<VoxelSource> source = open_by_name(path, options);
+  std::unique_ptr<VoxelSource> source = open_input_file(path, options);
   return options.use_placement ? with_file_placement(path, std::move(source)) : std::move(source);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "voxdag/core/grid.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/formats/imports/point_locator.hpp"
 
@@ -50,6 +51,8 @@ class VoxelSource {
   virtual std::optional<Grid> grid() const { return std::nullopt; }
   /// Returns whether the file says where its voxels lie, or how large they are.
   virtual bool has_place() const { return false; }
+  /// Returns the axis that points up if the file says it: 'y' or 'z'.
+  virtual std::optional<char> up() const { return std::nullopt; }
   /// Returns the coordinates that the file gives voxel (0, 0, 0) of visit_all().
   virtual Vec3l first_voxel() const { return {}; }
   /// Returns warnings for the user, one line each, without the name of the file.
@@ -64,9 +67,13 @@ struct VoxelSourceOptions {
   /// other than 0 do.
   std::optional<double> threshold;
   bool use_placement = true;  ///< Reads the placement that voxdag export wrote beside the file.
+  std::string format = {};    ///< The ending that tells the format, "xyz"; empty: that of the name.
+  std::string grid = {};  ///< For .vdb files: the name of the grid to read; empty: see open_vdb().
+  Work work = {};         ///< Its budget counts what is unpacked.
 };
 
-/// Opens a file by the end of its name, or a folder of PNG files. Throws Error for formats that are
+/// Opens a file by the end of its name, or a folder of PNG files. Files that gzip or Zstandard have
+/// compressed and pipes are unpacked first (InputFile). Throws Error for formats that are
 /// not known, and for options that the format does not have.
 std::unique_ptr<VoxelSource> open_voxel_source(const std::filesystem::path& path,
                                                const VoxelSourceOptions& options = {});

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "voxdag/core/io/resolved_output.hpp"
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
@@ -16,8 +17,14 @@ MeshChunks::MeshChunks(MappedFile file, const std::filesystem::path& path,
 
 std::unique_ptr<MeshChunks> open_mesh_chunks(const std::filesystem::path& path,
                                              const ReadOptions& options, std::size_t chunk_bytes) {
+  const std::string extension =
+      options.format.empty() ? path.extension().string() : "." + options.format;
+  // Only read_mesh() unpacks files.
+  if (path == "-" || extension == ".gz" || extension == ".zst" ||
+      resolve_output(path).descriptor >= 0)
+    return nullptr;
   MappedFile file(path, MappedFile::Access::kSequential);
-  switch (detect_mesh_format(file.text(), path.extension().string())) {
+  switch (detect_mesh_format(file.text(), extension)) {
     case MeshFormat::kObj:
       return open_obj_chunks(std::move(file), path, options, chunk_bytes);
     case MeshFormat::kPly:

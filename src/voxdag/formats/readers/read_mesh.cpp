@@ -4,7 +4,9 @@
 #include <new>
 
 #include "voxdag/core/float_origin.hpp"
+#include "voxdag/formats/input_file.hpp"
 #include "voxdag/formats/readers/assimp/assimp_reader.hpp"
+#include "voxdag/formats/readers/collada/collada_reader.hpp"
 #include "voxdag/formats/readers/gltf/gltf_reader.hpp"
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 #include "voxdag/formats/readers/off/off_reader.hpp"
@@ -12,6 +14,7 @@
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 #include "voxdag/formats/readers/stl/stl_reader.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
+#include "voxdag/formats/readers/threemf/threemf_reader.hpp"
 #include "voxdag/formats/readers/used_vertices.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
 
@@ -32,6 +35,10 @@ MeshWithAppearance read_format(const MeshSource& source, const std::string& exte
       return read_stl(source, parts);
     case MeshFormat::kOff:
       return read_off(source, parts);
+    case MeshFormat::k3mf:
+      return read_3mf(source, parts);
+    case MeshFormat::kCollada:
+      return read_collada(source, parts);
     case MeshFormat::kOther:
       break;
   }
@@ -42,11 +49,13 @@ MeshWithAppearance read_format(const MeshSource& source, const std::string& exte
 
 MeshWithAppearance read(const std::filesystem::path& path, const ReadOptions& options,
                         ReadParts parts) {
-  const MappedFile file(path, MappedFile::Access::kSequential);
+  const InputFile input(path, options.work);
+  const MappedFile file(input.path(), MappedFile::Access::kSequential);
   MeshSource source{file.text(), path.string(), path.parent_path(), &file, options};
   if (source.bytes.empty()) throw source.error("the file is empty");
+  const std::string extension =
+      options.format.empty() ? input.name().extension().string() : "." + options.format;
   try {
-    const std::string extension = path.extension().string();
     MeshWithAppearance result = read_format(source, extension, parts);
     UsedVertices used = used_vertices(source, result.mesh);
     source.origin =
@@ -87,6 +96,8 @@ MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension
   if (ext == ".gltf" || ext == ".glb") return MeshFormat::kGltf;
   if (ext == ".stl" || is_exact_binary_stl(bytes) || is_ascii_stl(bytes)) return MeshFormat::kStl;
   if (ext == ".off" || is_off(bytes)) return MeshFormat::kOff;
+  if (ext == ".3mf") return MeshFormat::k3mf;
+  if (ext == ".dae") return MeshFormat::kCollada;
   return MeshFormat::kOther;
 }
 

@@ -8,9 +8,11 @@
 
 namespace voxdag {
 
-/// Reads a mesh. The content decides the format if it is certain (PLY, glTF, STL, OFF), else the
-/// extension does. OBJ, PLY, STL, glTF and OFF have readers here; assimp reads other formats if the
-/// library was built with it. docs/meshes.md lists the features of each format that are read.
+/// Reads a mesh. Files that gzip or Zstandard have compressed, and pipes, are unpacked to memory
+/// first (InputFile). The content decides the format if it is certain (PLY, glTF, STL, OFF),
+/// else the extension does. OBJ, PLY, STL, glTF, OFF, 3MF and COLLADA have readers here; assimp
+/// reads other formats if the library was built with it. docs/meshes.md lists the features of each
+/// format that are read.
 ///
 /// Every index of the mesh is in range, every vertex that a triangle uses is finite, and there is
 /// at least one triangle: triangles with a vertex that is not finite are left out with a warning.
@@ -35,7 +37,7 @@ Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {
 MeshWithAppearance read_mesh_with_appearance(const std::filesystem::path& path,
                                              const ReadOptions& options = {});
 
-enum class MeshFormat { kObj, kPly, kStl, kGltf, kOff, kOther };
+enum class MeshFormat { kObj, kPly, kStl, kGltf, kOff, k3mf, kCollada, kOther };
 
 /// Returns the format of a file from its bytes and its extension (".obj", any case).
 MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension);

@@ -21,6 +21,9 @@ struct ReadOptions {
   bool any_assimp_importer = false;
   /// Whether to read the objects of the mesh: `o` and `g` of OBJ, nodes of glTF.
   bool objects = false;
+  /// The extension that tells the format, "obj"; empty: that of the file's name. Formats that the
+  /// content tells need none.
+  std::string format = {};
   /// If not null: receives the paths of all files that the mesh names (MTL, buffers, textures), so
   /// that the caller does not overwrite them. They need not exist.
   std::vector<std::filesystem::path>* named_files = nullptr;

@@ -1,5 +1,6 @@
 #pragma once
 /// Reads the colours, normals and materials of many voxels, one after the other.
+#include "voxdag/core/orientation.hpp"
 #include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/stored/attributes/page_reader.hpp"
 
@@ -16,8 +17,11 @@ struct VoxelLook {
 /// thread needs its own. Refers to the bytes of the look.
 class LookReader {
  public:
-  explicit LookReader(const LookView& look)
+  /// With `orientation`, the cells to read are those of the reoriented grid, and so are normals.
+  explicit LookReader(const LookView& look, const Orientation& orientation = {})
       : look_(look),
+        orientation_(orientation),
+        is_turned_(!(orientation == Orientation{})),
         colors_(look.dag.attributes.colors),
         normals_(look.dag.attributes.normals),
         has_colors_(look.has_colors()),
@@ -31,6 +35,17 @@ class LookReader {
 
   /// Returns what is stored for the cell `cell` of `level`.
   VoxelLook read(Vec3i cell, int level) {
+    if (!is_turned_) return read_stored(cell, level);
+    VoxelLook result = read_stored(source_cell(orientation_, cell, level), level);
+    const Vec3f normal = result.normal;
+    for (int axis = 0; axis < 3; ++axis)
+      result.normal[axis] =
+          normal[orientation_.source_axis[axis]] * (orientation_.is_flipped[axis] ? -1.0f : 1.0f);
+    return result;
+  }
+
+ private:
+  VoxelLook read_stored(Vec3i cell, int level) {
     VoxelLook result;
     if (!look_.esvo.is_empty()) {
       EsvoVoxel voxel;
@@ -49,8 +64,9 @@ class LookReader {
     return result;
   }
 
- private:
   LookView look_;
+  Orientation orientation_;
+  bool is_turned_;
   PageReader colors_, normals_;
   bool has_colors_, has_normals_, has_materials_;
 };

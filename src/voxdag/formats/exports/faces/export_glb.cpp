@@ -1,19 +1,24 @@
+#include <sys/mman.h>
+
 #include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/io/descriptor.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
 #include "voxdag/formats/exports/faces/export_faces.hpp"
-#include "voxdag/formats/exports/faces/exported_rectangles.hpp"
+#include "voxdag/formats/exports/faces/exported_polygons.hpp"
 #include "voxdag/formats/exports/json_of.hpp"
+#include "voxdag/image/png.hpp"
 
 namespace voxdag {
 namespace {
 
 constexpr std::uint64_t kMaxGlbBytes = 0xFFFFFFFF;
-constexpr std::uint64_t kIndexBytes = 6 * sizeof(std::uint32_t);  ///< The indices of a rectangle.
+constexpr std::uint64_t kIndexBytes = 3 * sizeof(std::uint32_t);  ///< The indices of a triangle.
 
 struct ColoredCorner {
   Vec3f place;
@@ -21,32 +26,51 @@ struct ColoredCorner {
 };
 static_assert(sizeof(ColoredCorner) == 20);
 
+struct TexturedCorner {
+  Vec3f place;
+  Vec2f uv;
+};
+static_assert(sizeof(TexturedCorner) == 20);
+
 std::uint16_t linear16(std::uint8_t srgb) {
   return static_cast<std::uint16_t>(srgb_to_linear(static_cast<float>(srgb) / 255) * 65535 + 0.5f);
 }
 
-/// Computes the sizes and the JSON of a GLB file from the number of its rectangles.
+/// Returns the PNG file of an image, padded with zeros to a multiple of 4 bytes.
+std::string png_bytes(const ImageRgb8& image) {
+  const Descriptor memory(memfd_create("texture", MFD_CLOEXEC));
+  const std::string path = "/proc/self/fd/" + std::to_string(memory.get());
+  write_png(path, image);
+  std::string bytes(MappedFile(path).text());
+  bytes.resize((bytes.size() + 3) & ~std::size_t{3});
+  return bytes;
+}
+
+/// Computes the sizes and the JSON of a GLB file from the numbers of its corners and triangles.
 struct GlbPlan {
   Grid grid;
   Vec3i origin;   ///< The voxel at the origin of the mesh's coordinates, if they are in voxels.
   bool is_world;  ///< The mesh's coordinates are in world units.
   bool has_colors;
-  ExportedRectangles::Extent extent;
+  ExportedPolygons::Extent extent;
+  std::string texture;  ///< A PNG file, or empty.
 
-  Vec3f place(Vec3i corner) const {
-    return is_world ? Vec3f(grid.to_world(Vec3d(corner))) : Vec3f(corner - origin);
+  Vec3f place(Vec3d corner) const {
+    return Vec3f(is_world ? grid.to_world(corner) : corner - Vec3d(origin));
   }
   std::uint64_t stride() const { return has_colors ? sizeof(ColoredCorner) : sizeof(Vec3f); }
-  std::uint64_t corners() const { return 4 * extent.count; }
+  std::uint64_t corners() const { return extent.corners; }
   std::uint64_t corner_bytes() const { return corners() * stride(); }
-  std::uint64_t data_bytes() const { return corner_bytes() + extent.count * kIndexBytes; }
+  std::uint64_t index_bytes() const { return extent.triangles * kIndexBytes; }
+  std::uint64_t data_bytes() const { return corner_bytes() + index_bytes() + texture.size(); }
 
   /// Adds the mesh, which must not be empty, to the document.
   void add_mesh(nlohmann::ordered_json& json) const {
     constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
     constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
     nlohmann::ordered_json attributes = {{"POSITION", 0}};
-    if (has_colors) attributes["COLOR_0"] = 2;
+    const bool has_texture = !texture.empty();
+    if (has_colors) attributes[has_texture ? "TEXCOORD_0" : "COLOR_0"] = 2;
     nlohmann::ordered_json primitive = {
         {"attributes", attributes}, {"indices", 1}, {"material", 0}};
     json["meshes"] = {{{"primitives", {primitive}}}};
@@ -55,6 +79,16 @@ struct GlbPlan {
                            {{"baseColorFactor", {color.x, color.y, color.z, 1}},
                             {"metallicFactor", 0},
                             {"roughnessFactor", 1}}}}};
+    if (has_texture) {
+      constexpr int kNearest = 9728, kClampToEdge = 33071;
+      json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+      json["textures"] = {{{"sampler", 0}, {"source", 0}}};
+      json["samplers"] = {{{"magFilter", kNearest},
+                           {"minFilter", kNearest},
+                           {"wrapS", kClampToEdge},
+                           {"wrapT", kClampToEdge}}};
+      json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
+    }
     json["buffers"] = {{{"byteLength", data_bytes()}}};
     json["bufferViews"] = {{{"buffer", 0},
                             {"byteLength", corner_bytes()},
@@ -62,8 +96,12 @@ struct GlbPlan {
                             {"target", kArrayBuffer}},
                            {{"buffer", 0},
                             {"byteOffset", corner_bytes()},
-                            {"byteLength", extent.count * kIndexBytes},
+                            {"byteLength", index_bytes()},
                             {"target", kElementArrayBuffer}}};
+    if (has_texture)
+      json["bufferViews"].push_back({{"buffer", 0},
+                                     {"byteOffset", corner_bytes() + index_bytes()},
+                                     {"byteLength", texture.size()}});
     json["accessors"] = {{{"bufferView", 0},
                           {"componentType", kFloat},
                           {"count", corners()},
@@ -72,9 +110,15 @@ struct GlbPlan {
                           {"max", json_of(Vec3d(place(extent.bounds.hi)))}},
                          {{"bufferView", 1},
                           {"componentType", kUnsignedInt},
-                          {"count", 6 * extent.count},
+                          {"count", 3 * extent.triangles},
                           {"type", "SCALAR"}}};
-    if (has_colors)
+    if (has_texture)
+      json["accessors"].push_back({{"bufferView", 0},
+                                   {"byteOffset", sizeof(Vec3f)},
+                                   {"componentType", kFloat},
+                                   {"count", corners()},
+                                   {"type", "VEC2"}});
+    else if (has_colors)
       json["accessors"].push_back({{"bufferView", 0},
                                    {"byteOffset", sizeof(Vec3f)},
                                    {"componentType", kUnsignedShort},
@@ -91,7 +135,7 @@ struct GlbPlan {
       node["translation"] = json_of(grid.to_world(Vec3d(origin)));
       node["scale"] = json_of({side, side, side});
     }
-    if (extent.count > 0) node["mesh"] = 0;
+    if (extent.triangles > 0) node["mesh"] = 0;
     node["extras"] = {{"grid",
                        {{"resolution", grid.resolution()},
                         {"origin", json_of(grid.origin)},
@@ -101,7 +145,7 @@ struct GlbPlan {
     json["scene"] = 0;
     json["scenes"] = {{{"nodes", {0}}}};
     json["nodes"] = {node};
-    if (extent.count > 0) add_mesh(json);
+    if (extent.triangles > 0) add_mesh(json);
     std::string text = json.dump();
     text.resize((text.size() + 3) & ~std::size_t{3}, ' ');
     return text;
@@ -113,25 +157,21 @@ void write_word(AtomicFile& file, std::uint64_t word) {
   file.write(&value, sizeof value);
 }
 
-void write_corners(AtomicFile& file, const GlbPlan& plan, const FaceRectangle& rectangle) {
-  for (const Vec3i corner : corners_of(rectangle)) {
+void write_corners(AtomicFile& file, const GlbPlan& plan, const FacePolygon& polygon) {
+  const Value8 color = polygon.color;
+  const Vec2f uv = plan.texture.empty() ? Vec2f{} : plan.extent.texture.uv(color);
+  for (const Vec3d corner : polygon.corners) {
     const Vec3f place = plan.place(corner);
-    if (!plan.has_colors) {
-      file.write(&place, sizeof place);
-    } else {
-      const Value8 color = rectangle.color;
+    if (!plan.texture.empty()) {
+      const TexturedCorner textured{place, uv};
+      file.write(&textured, sizeof textured);
+    } else if (plan.has_colors) {
       const ColoredCorner colored{place, linear16(color.x), linear16(color.y), linear16(color.z),
                                   0xFFFF};
       file.write(&colored, sizeof colored);
+    } else {
+      file.write(&place, sizeof place);
     }
-  }
-}
-
-void write_indices(AtomicFile& file, std::uint64_t rectangles) {
-  for (std::uint64_t i = 0; i < rectangles; ++i) {
-    const auto first = static_cast<std::uint32_t>(4 * i);
-    const std::array indices{first, first + 1, first + 2, first, first + 2, first + 3};
-    file.write(indices.data(), sizeof indices);
   }
 }
 
@@ -140,14 +180,16 @@ void write_indices(AtomicFile& file, std::uint64_t rectangles) {
 void export_glb(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                 const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
-  ExportedRectangles rectangles(voxels, window, options, true);
-  const GlbPlan plan{grid, window.lo, float_suffices(grid), rectangles.has_colors(),
-                     rectangles.measure()};
+  ExportedPolygons polygons(voxels, window, options, true);
+  GlbPlan plan{grid, window.lo, float_suffices(grid), polygons.has_colors(), polygons.measure(),
+               {}};
+  if (polygons.has_texture() && plan.extent.triangles > 0)
+    plan.texture = png_bytes(plan.extent.texture.image());
   const std::string document = plan.document();
   const std::uint64_t data = plan.data_bytes();
   const std::uint64_t bytes = 12 + 8 + document.size() + (data > 0 ? 8 + data : 0);
   if (bytes > kMaxGlbBytes)
-    refuse_export(path, std::to_string(plan.extent.count) + " rectangles take " +
+    refuse_export(path, std::to_string(plan.extent.triangles) + " triangles take " +
                             std::to_string(bytes) +
                             " bytes, more than the 4294967295 of a GLB file");
   check_disk_space(path, bytes);
@@ -161,9 +203,16 @@ void export_glb(const std::filesystem::path& path, const VoxelSet& voxels, const
   if (data > 0) {
     write_word(file, data);
     file.write(std::string_view("BIN\0", 4));
-    rectangles.for_each(
-        [&](const FaceRectangle& rectangle) { write_corners(file, plan, rectangle); });
-    write_indices(file, plan.extent.count);
+    polygons.for_each([&](const FacePolygon& polygon) { write_corners(file, plan, polygon); }, 0.8);
+    std::uint32_t first = 0;
+    polygons.for_each([&](const FacePolygon& polygon) {
+      for (std::array<std::uint32_t, 3> triangle : polygon.triangles) {
+        for (std::uint32_t& corner : triangle) corner += first;
+        file.write(triangle.data(), sizeof triangle);
+      }
+      first += static_cast<std::uint32_t>(polygon.corners.size());
+    });
+    file.write(plan.texture);
   }
   file.commit();
 }

@@ -5,7 +5,8 @@
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
 #include "voxdag/formats/exports/faces/export_faces.hpp"
-#include "voxdag/formats/exports/faces/exported_rectangles.hpp"
+#include "voxdag/formats/exports/faces/exported_polygons.hpp"
+#include "voxdag/image/png.hpp"
 
 namespace voxdag {
 namespace {
@@ -28,39 +29,58 @@ std::array<std::string, 256> channel_texts() {
 void export_obj(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                 const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
-  ExportedRectangles rectangles(voxels, window, options, true);
+  ExportedPolygons polygons(voxels, window, options, true);
+  std::filesystem::path material = path, image = path;
+  material.replace_extension(".mtl");
+  image.replace_extension(".png");
+  ColorTexture texture;
+  if (polygons.has_texture()) {
+    texture = polygons.measure().texture;
+    write_png(image, texture.image());
+    write_whole_file(material,
+                     "newmtl voxels\nKd 1 1 1\nmap_Kd " + image.filename().string() + "\n");
+  }
   AtomicFile file(path);
   std::string text = "# made by voxdag\n# grid_origin";
   append(text, grid.origin);
   text.append("\n# voxel_size ").append(shortest(grid.voxel_size));
   text.append("\n# resolution ").append(std::to_string(grid.resolution())).append("\n");
+  if (polygons.has_texture())
+    text.append("mtllib ").append(material.filename().string()).append("\nusemtl voxels\n");
   file.write(text);
   const bool use_float = float_suffices(grid);
   const std::array<std::string, 256> channels = channel_texts();
-  std::uint64_t corner = 1;
-  rectangles.for_each([&](const FaceRectangle& rectangle) {
+  std::uint64_t corner = 1, uv = 0;
+  polygons.for_each([&](const FacePolygon& polygon) {
     text.clear();
-    const Value8 color = rectangle.color;
-    for (const Vec3i place : corners_of(rectangle)) {
+    const Value8 color = polygon.color;
+    for (const Vec3d place : polygon.corners) {
       text.append("v");
-      const Vec3d world = grid.to_world(Vec3d(place));
+      const Vec3d world = grid.to_world(place);
       if (use_float)
         append(text, Vec3f(world));
       else
         append(text, world);
-      if (rectangles.has_colors())
+      if (polygons.has_colors() && !polygons.has_texture())
         for (const std::uint8_t channel : {color.x, color.y, color.z})
           text.append(" ").append(channels[channel]);
       text.append("\n");
     }
+    if (polygons.has_texture()) {
+      const Vec2f at = texture.uv(color);  // v points up in OBJ files.
+      text.append("vt ").append(shortest(at.x)).append(" ").append(shortest(1 - at.y)).append("\n");
+      ++uv;
+    }
     // Some readers skip quads.
-    for (const std::array<int, 3> triangle : {std::array{0, 1, 2}, {0, 2, 3}}) {
+    for (const std::array<std::uint32_t, 3>& triangle : polygon.triangles) {
       text.append("f");
-      for (const int i : triangle)
-        text.append(" ").append(std::to_string(corner + static_cast<std::uint64_t>(i)));
+      for (const std::uint32_t i : triangle) {
+        text.append(" ").append(std::to_string(corner + i));
+        if (uv > 0) text.append("/").append(std::to_string(uv));
+      }
       text.append("\n");
     }
-    corner += 4;
+    corner += polygon.corners.size();
     file.write(text);
   });
   file.commit();

@@ -6,7 +6,7 @@
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
 #include "voxdag/formats/exports/faces/export_faces.hpp"
-#include "voxdag/formats/exports/faces/exported_rectangles.hpp"
+#include "voxdag/formats/exports/faces/exported_polygons.hpp"
 
 namespace voxdag {
 namespace {
@@ -23,15 +23,21 @@ void write_triangle(AtomicFile& file, Vec3f normal, Vec3f a, Vec3f b, Vec3f c) {
 
 }  // namespace
 
-void export_stl(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
+void export_stl(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& world,
                 const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
-  if (!float_suffices(grid))
-    throw Error(path.string(), "",
-                "STL has float coordinates, which are too coarse for this grid's place in the "
-                "world: export .obj, .ply or .glb");
-  ExportedRectangles faces(voxels, window, options, false);
-  const std::uint64_t triangles = 2 * faces.measure().count;
+  Grid grid = world;
+  std::optional<Vec3d> offset;
+  if (!float_suffices(world)) {
+    offset = world.to_world(Vec3d(window.lo));
+    grid.origin = Vec3d(window.lo) * -grid.voxel_size;
+    if (!float_suffices(grid))
+      throw Error(path.string(), "",
+                  "STL has float coordinates, which cannot hold voxels of this size: export .obj, "
+                  ".ply or .glb");
+  }
+  ExportedPolygons polygons(voxels, window, options, false);
+  const std::uint64_t triangles = polygons.measure().triangles;
   if (triangles > kMaxTriangles)
     refuse_export(
         path, std::to_string(triangles) + " triangles are more than the 4294967295 of an STL file");
@@ -42,15 +48,25 @@ void export_stl(const std::filesystem::path& path, const VoxelSet& voxels, const
   file.write(head);
   const auto count = static_cast<std::uint32_t>(triangles);
   file.write(&count, sizeof count);
-  faces.for_each([&](const FaceRectangle& face) {
-    std::array<Vec3f, 4> corners;
-    const std::array<Vec3i, 4> places = corners_of(face);
-    for (std::size_t i = 0; i < 4; ++i) corners[i] = Vec3f(grid.to_world(Vec3d(places[i])));
-    const Vec3f normal(face_normal(face.face));
-    write_triangle(file, normal, corners[0], corners[1], corners[2]);
-    write_triangle(file, normal, corners[0], corners[2], corners[3]);
+  std::vector<Vec3f> corners;
+  polygons.for_each([&](const FacePolygon& polygon) {
+    corners.clear();
+    for (const Vec3d place : polygon.corners) corners.push_back(Vec3f(grid.to_world(place)));
+    const Vec3f normal(face_normal(polygon.face));
+    for (const auto& [a, b, c] : polygon.triangles)
+      write_triangle(file, normal, corners[a], corners[b], corners[c]);
   });
   file.commit();
+  if (!offset) return;
+  ArrayLayout layout{"triangles", "float32", ""};
+  layout.offset = offset;
+  write_placement(path, world, window, layout, options);
+  if (options.notes == nullptr) return;
+  std::string note =
+      "floats are too coarse for its place in the world: its coordinates need the offset";
+  for (int axis = 0; axis < 3; ++axis) note.append(" ").append(shortest((*offset)[axis]));
+  options.notes->push_back(path.string() + ": " + note + ", as " + path.filename().string() +
+                           ".json says");
 }
 
 }  // namespace voxdag

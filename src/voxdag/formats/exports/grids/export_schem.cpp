@@ -113,7 +113,7 @@ void export_schem(const std::filesystem::path& path, const VoxelSet& voxels, con
   const Box3i window = export_window(path, voxels, options);
   const Vec3i size = window.hi - window.lo;
   check_size(path, size);
-  LookReader look(options.look);
+  LookReader look = options.look_reader();
   const bool has_colors = look.has_colors();
 
   constexpr std::int32_t kMinecraft1_16_5 = 2586;
@@ -150,7 +150,7 @@ void export_schem(const std::filesystem::path& path, const VoxelSet& voxels, con
   nbt.add_empty_list("BlockEntities");
   nbt.end_compound();
   file.commit();
-  write_placement(path, grid, window, {"blocks: place 0 is air", "uint8", "yzx"});
+  write_placement(path, grid, window, {"blocks: place 0 is air", "uint8", "yzx"}, options);
 }
 
 }  // namespace voxdag

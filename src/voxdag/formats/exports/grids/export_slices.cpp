@@ -58,7 +58,7 @@ void export_slices(const std::filesystem::path& folder, int axis, const VoxelSet
   const Vec3i size = window.hi - window.lo;
   const auto width = static_cast<std::uint32_t>(size[axes.column]);
   const auto height = static_cast<std::uint32_t>(size[axes.row]);
-  LookReader look(options.look);
+  LookReader look = options.look_reader();
   const bool has_colors = look.has_colors();
   const std::size_t digits = std::max<std::size_t>(4, std::to_string(size[axis] - 1).size());
 
@@ -103,7 +103,8 @@ void export_slices(const std::filesystem::path& folder, int axis, const VoxelSet
       output.path() / "placement.json", grid, window,
       {has_colors ? "RGBA, opaque where the voxel is set" : "1 where the voxel is set",
        has_colors ? "RGBA of 8 bits" : "1 bit",
-       {names[axis], names[axes.row], names[axes.column]}});
+       {names[axis], names[axes.row], names[axes.column]}},
+      options);
   output.take_name();
 }
 

@@ -81,7 +81,7 @@ void export_spc(const std::filesystem::path& path, const SvdagView& dag, const G
   file.write_bytes(bytes.data(), bytes.size());
   file.commit();
   write_placement(path, grid, options.window.value_or(whole_grid(dag.levels)),
-                  {"octrees of kaolin.rep.Spc: child masks, breadth first", "uint8", ""});
+                  {"octrees of kaolin.rep.Spc: child masks, breadth first", "uint8", ""}, options);
 }
 
 }  // namespace voxdag

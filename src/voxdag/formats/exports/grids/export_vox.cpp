@@ -42,7 +42,10 @@ std::filesystem::path section_path(const std::filesystem::path& path, Vec3i numb
 class Source {
  public:
   Source(const VoxelSet& voxels, const Box3i& window, const ExportOptions& options)
-      : voxels_(voxels), options_(options), look_(options.look), has_colors_(look_.has_colors()) {
+      : voxels_(voxels),
+        options_(options),
+        look_(options.look_reader()),
+        has_colors_(look_.has_colors()) {
     whole_ =
         count_voxels(voxels, window, ~std::uint64_t{0} - 1, [&] { report_export(options, 0, 1); });
     if (!has_colors_) return;
@@ -163,9 +166,9 @@ std::vector<std::filesystem::path> export_vox(const std::filesystem::path& path,
       "palette indices", ""};
   if (!is_cut) layout.lo_in_file = position;
   if (is_cut)
-    write_placement_file(path.string() + ".json", grid, window, layout);
+    write_placement_file(path.string() + ".json", grid, window, layout, options);
   else
-    write_placement(path, grid, window, layout);
+    write_placement(path, grid, window, layout, options);
   return files;
 }
 

@@ -99,7 +99,7 @@ class GridFiller {
       : voxels_(voxels),
         window_(window),
         options_(options),
-        look_(options.look),
+        look_(options.look_reader()),
         memory_(options.memory, 0),
         density_(openvdb::FloatGrid::create(0)),
         colors_(look_.has_colors() ? openvdb::Vec3SGrid::create() : nullptr) {}

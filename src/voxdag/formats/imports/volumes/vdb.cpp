@@ -7,14 +7,14 @@
 
 namespace voxdag {
 std::unique_ptr<VoxelSource> open_vdb(const std::filesystem::path& path,
-                                      std::optional<double> threshold) {
+                                      std::optional<double> threshold, const std::string& grid) {
   std::string reason;
   const auto* const module =
       static_cast<const VdbModule*>(load_module(kVdbModuleFile, kVdbModuleName, reason));
   if (module == nullptr)
     throw Error(path.string(), "",
                 "is read by a module that is built where OpenVDB is installed: " + reason);
-  return std::unique_ptr<VoxelSource>(module->open(path, threshold));
+  return std::unique_ptr<VoxelSource>(module->open(path, threshold, grid));
 }
 
 }  // namespace voxdag

@@ -60,10 +60,10 @@ Vec3l vector_of(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
 
 class Vdb : public VoxelSource {
  public:
-  Vdb(std::filesystem::path path, std::optional<double> threshold)
+  Vdb(std::filesystem::path path, std::optional<double> threshold, const std::string& grid)
       : path_(std::move(path)), rule_{false, threshold} {
     open_input(path_);  // Throws the usual errors.
-    read_first_grid();
+    read_grid(grid);
     rule_.is_level_set = vdb_->getGridClass() == openvdb::GRID_LEVEL_SET;
     find_extent();
   }
@@ -89,14 +89,28 @@ class Vdb : public VoxelSource {
   }
 
  private:
-  void read_first_grid() {
+  /// Reads the grid of this name; if it is empty, the default of open_vdb().
+  void read_grid(const std::string& wanted) {
     openvdb::initialize();
     openvdb::io::File file(path_.string());
     file.open(/*delayLoad=*/false);
-    for (auto name = file.beginName(); name != file.endName() && !vdb_; ++name)
-      if (with_grid(*file.readGridMetadata(*name), [](const auto&) {})) vdb_ = file.readGrid(*name);
-    if (!vdb_)
+    std::string chosen, names;
+    std::size_t count = 0;
+    for (auto name = file.beginName(); name != file.endName(); ++name) {
+      if (!with_grid(*file.readGridMetadata(*name), [](const auto&) {})) continue;
+      names += (count++ == 0 ? "" : ", ") + name_in_quotes(*name);
+      const bool is_better =
+          wanted.empty() ? chosen.empty() || *name == "density" : *name == wanted;
+      if (is_better) chosen = *name;
+    }
+    if (count == 0)
       throw Error(path_.string(), "", "has no grid of floats, doubles, integers or bools, no mask");
+    if (chosen.empty() && !wanted.empty())
+      throw Error(path_.string(), "", "has no grid " + name_in_quotes(wanted) + ", but " + names);
+    if (wanted.empty() && count > 1)
+      warnings_.push_back("has the grids " + names + "; " + name_in_quotes(chosen) +
+                          " is read, --grid chooses another one");
+    vdb_ = file.readGrid(chosen);
   }
 
   void find_extent() {
@@ -146,10 +160,10 @@ class Vdb : public VoxelSource {
   std::vector<std::string> warnings_;
 };
 
-VoxelSource* open_vdb_in_module(const std::filesystem::path& path,
-                                std::optional<double> threshold) {
+VoxelSource* open_vdb_in_module(const std::filesystem::path& path, std::optional<double> threshold,
+                                const std::string& grid) {
   try {
-    return new Vdb(path, threshold);
+    return new Vdb(path, threshold, grid);
   } catch (const openvdb::Exception& error) {
     throw Error(path.string(), "", "OpenVDB: " + printable(error.what()));
   } catch (const std::ios_base::failure& error) {

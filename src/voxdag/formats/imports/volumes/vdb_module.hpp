@@ -6,7 +6,8 @@
 namespace voxdag {
 
 struct VdbModule {
-  VoxelSource* (*open)(const std::filesystem::path& path, std::optional<double> threshold);
+  VoxelSource* (*open)(const std::filesystem::path& path, std::optional<double> threshold,
+                       const std::string& grid);
 };
 
 /// The name of its file, and of the VdbModule in it.

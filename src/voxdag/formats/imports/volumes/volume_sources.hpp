@@ -50,18 +50,20 @@ std::unique_ptr<VoxelSource> open_png_slices(const std::filesystem::path& folder
 /// Returns whether the name `a` comes before `b` if numbers in them are compared by value.
 bool is_before_by_numbers(std::string_view a, std::string_view b);
 
-/// Opens the first grid of floats, doubles, integers or bools, or the first mask, of an OpenVDB
-/// file. Its active voxels are set; with a threshold those of them whose value is at least that. A
-/// level set without a threshold sets its inside instead: all voxels with values below 0. Tiles set
-/// all their voxels. Voxels are numbered from the least coordinates that are set; the transform
-/// says where their centres are.
+/// Opens a grid of floats, doubles, integers or bools, or a mask, of an OpenVDB file: the one
+/// called `grid`. If `grid` is empty: "density", else the first one of the file; a warning names it
+/// if there are others. Its active voxels are set; with a threshold those of them whose value is at
+/// least that. A level set without a threshold sets its inside instead: all voxels with values
+/// below 0. Tiles set all their voxels. Voxels are numbered from the least coordinates that are
+/// set; the transform says where their centres are.
 ///
 /// OpenVDB reads the whole file into memory, and is not made for files that one does not trust: a
 /// damaged file can crash it. Its exceptions become Error. It is in a module of its own,
 /// voxdag_vdb.so, which is built where OpenVDB is installed and found as shared libraries are.
 /// Throws Error if there is none.
 std::unique_ptr<VoxelSource> open_vdb(const std::filesystem::path& path,
-                                      std::optional<double> threshold);
+                                      std::optional<double> threshold,
+                                      const std::string& grid = {});
 
 /// Opens a scene of MagicaVoxel: every visible model, with the colours of the palette. A voxel
 /// keeps its coordinates x, y, z (z is up), less the least ones of the scene, which are the origin

@@ -166,8 +166,14 @@ Mesh read_with_assimp(const MeshSource& source, const std::string& extension) {
       std::make_unique<AllowedFiles>(source).release());  // The importer deletes it.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = importer.ReadFile(
-      source.name, aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);
+  constexpr unsigned kSteps =
+      aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType;
+  // The name of an unpacked file does not open its bytes.
+  const bool is_file = std::filesystem::path(source.name).extension() == extension;
+  const aiScene* scene =
+      is_file ? importer.ReadFile(source.name, kSteps)
+              : importer.ReadFileFromMemory(source.bytes.data(), source.bytes.size(), kSteps,
+                                            extension.empty() ? "" : extension.c_str() + 1);
   if (scene == nullptr || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0)
     throw source.error("assimp: " + reason(importer));
   std::uint64_t vertices = 0, faces = 0;

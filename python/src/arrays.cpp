@@ -1,0 +1,110 @@
+#include "arrays.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+namespace py = pybind11;
+
+namespace voxdag::python {
+namespace {
+
+[[noreturn]] void refuse(const char* name, const std::string& value, const std::string& allowed) {
+  throw py::value_error(std::string(name) + " has " + value + ", which must be " + allowed);
+}
+
+std::string text_of(double value) { return py::cast<std::string>(py::str(py::float_(value))); }
+
+}  // namespace
+
+char kind_of(const py::array& array, const char* name, std::string_view allowed,
+             const char* allowed_in_words) {
+  const char kind = array.dtype().kind();
+  if (allowed.find(kind) == std::string_view::npos)
+    throw py::type_error(std::string(name) + " has the type " +
+                         py::cast<std::string>(py::str(array.dtype())) + ", and must be " +
+                         allowed_in_words);
+  return kind;
+}
+
+void check_rows(const py::array& array, const char* name) {
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    throw py::value_error(std::string(name) + " must have the shape (N, 3)");
+}
+
+std::vector<Vec3<std::int64_t>> whole_rows_of(const py::array& given, const char* name,
+                                              std::int64_t least, std::int64_t most) {
+  const char kind = kind_of(given, name, "iuf", "whole numbers");
+  check_rows(given, name);
+  const std::string range =
+      "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+  std::vector<Vec3<std::int64_t>> rows(static_cast<std::size_t>(given.shape(0)));
+  // Refuses what is not in range; also NaN.
+  const auto take = [&](const auto& values) {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const auto value = values.data()[3 * i + static_cast<std::size_t>(c)];
+        using Value = std::remove_cv_t<decltype(value)>;
+        bool is_allowed = false;
+        if constexpr (std::is_floating_point_v<Value>)
+          is_allowed = value >= static_cast<Value>(least) && value <= static_cast<Value>(most) &&
+                       value == std::floor(value);
+        else
+          is_allowed = std::cmp_greater_equal(value, least) && std::cmp_less_equal(value, most);
+        if (!is_allowed) {
+          if constexpr (std::is_floating_point_v<Value>)
+            refuse(name, text_of(value), range);
+          else
+            refuse(name, std::to_string(value), range);
+        }
+        rows[i][c] = static_cast<std::int64_t>(value);
+      }
+  };
+  if (kind == 'f')
+    take(Array<double>(given));
+  else if (kind == 'u')
+    take(Array<std::uint64_t>(given));
+  else
+    take(Array<std::int64_t>(given));
+  return rows;
+}
+
+std::vector<Vec3i> voxels_of(const py::array& given, const char* name) {
+  using Limits = std::numeric_limits<std::int32_t>;
+  std::vector<Vec3i> voxels;
+  for (const Vec3<std::int64_t> row : whole_rows_of(given, name, Limits::min(), Limits::max()))
+    voxels.push_back(Vec3i(row));
+  return voxels;
+}
+
+std::vector<Vec3<std::uint8_t>> colors_of(const py::array& given) {
+  constexpr const char* kName = "colors";
+  const char kind = kind_of(given, kName, "iuf", "numbers");
+  const bool is_16_bits = kind == 'u' && given.itemsize() == 2;
+  std::vector<Vec3<std::uint8_t>> colors;
+  if (kind != 'f') {
+    for (const Vec3<std::int64_t> row : whole_rows_of(given, kName, 0, is_16_bits ? 65535 : 255)) {
+      Vec3<std::uint8_t> color;
+      for (int c = 0; c < 3; ++c)
+        color[c] = static_cast<std::uint8_t>(is_16_bits ? (row[c] + 128) / 257 : row[c]);
+      colors.push_back(color);
+    }
+    return colors;
+  }
+  // Sums of float32 may exceed 1 by their rounding.
+  constexpr double kRounding = 1e-6;
+  for (const Vec3d row : rows_of<double>(given, kName)) {
+    Vec3<std::uint8_t> color;
+    for (int c = 0; c < 3; ++c) {
+      if (!(row[c] >= -kRounding && row[c] <= 1 + kRounding))
+        refuse(kName, text_of(row[c]), "from 0 to 1 if the colours are real numbers");
+      color[c] = static_cast<std::uint8_t>(std::nearbyint(std::clamp(row[c], 0.0, 1.0) * 255));
+    }
+    colors.push_back(color);
+  }
+  return colors;
+}
+
+}  // namespace voxdag::python

@@ -1,0 +1,283 @@
+// 3MF and COLLADA: small files, their transforms, units and colours, and damaged ones.
+#include <gtest/gtest.h>
+#include <minizip/zip.h>
+
+#include <map>
+
+#include "support/error_of.hpp"
+#include "support/temp_dir.hpp"
+#include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/image/color.hpp"
+
+namespace voxdag {
+namespace {
+
+using Parts = std::map<std::string, std::string>;
+
+void write_zip(const std::filesystem::path& path, const Parts& parts) {
+  const zipFile zip = zipOpen64(path.c_str(), 0);
+  for (const auto& [name, text] : parts) {
+    zip_fileinfo info{};
+    zipOpenNewFileInZip(zip, name.c_str(), &info, nullptr, 0, nullptr, 0, nullptr, Z_DEFLATED, 9);
+    zipWriteInFileInZip(zip, text.data(), static_cast<unsigned>(text.size()));
+    zipCloseFileInZip(zip);
+  }
+  zipClose(zip, nullptr);
+}
+
+const std::string kMesh3mf =
+    "<mesh><vertices><vertex x='1' y='2' z='3'/><vertex x='2' y='2' z='3'/><vertex x='1' y='4' "
+    "z='3'/></vertices><triangles><triangle v1='0' v2='1' v3='2'";
+
+std::string model_3mf(const std::string& resources, const std::string& items,
+                      const std::string& attributes = "") {
+  return "<?xml version='1.0'?><model " + attributes +
+         " xmlns='http://schemas.microsoft.com/3dmanufacturing/core/2015/02' "
+         "xmlns:m='http://schemas.microsoft.com/3dmanufacturing/material/2015/02' xmlns:p='p'>"
+         "<resources>" +
+         resources + "</resources><build>" + items + "</build></model>";
+}
+
+class Threemf : public testing::Test {
+ protected:
+  std::filesystem::path write(const Parts& parts) const {
+    std::filesystem::remove(dir_ / "a.3mf");
+    write_zip(dir_ / "a.3mf", parts);
+    return dir_ / "a.3mf";
+  }
+  MeshWithAppearance read(const std::string& model) const {
+    return read_mesh_with_appearance(write({{"3D/3dmodel.model", model}}));
+  }
+  std::string refusal(const std::string& model) const {
+    return error_of([&] { read(model); });
+  }
+  const TempDir dir_;
+};
+
+TEST_F(Threemf, ItemsAndComponentsAreTransformed) {
+  const Mesh mesh =
+      read(model_3mf(
+               "<object id='1'>" + kMesh3mf +
+                   "/></triangles></mesh></object><object id='2'>"
+                   "<components><component objectid='1' transform='0 1 0 -1 0 0 0 0 1 10 0 0'/>"
+                   "</components></object>",
+               "<item objectid='2' transform='1 0 0 0 1 0 0 0 1 0 0 5'/>"))
+          .mesh;
+  ASSERT_EQ(mesh.vertices.size(), 3u);
+  EXPECT_EQ(mesh.vertices[0], (Vec3f{8, 1, 8}));
+  EXPECT_EQ(mesh.vertices[1], (Vec3f{8, 2, 8}));
+  EXPECT_EQ(mesh.vertices[2], (Vec3f{6, 1, 8}));
+}
+
+TEST_F(Threemf, UnitsBecomeMillimetres) {
+  for (const auto& [unit, size] :
+       {std::pair{"inch", 25.4f}, {"micron", 0.001f}, {"meter", 1000.f}}) {
+    const Mesh mesh =
+        read(model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>",
+                       "<item objectid='1' transform='1 0 0 0 1 0 0 0 1 1 0 0'/>",
+                       std::string("unit='") + unit + "'"))
+            .mesh;
+    EXPECT_FLOAT_EQ(mesh.vertices[0].x, 2 * size);
+    EXPECT_FLOAT_EQ(mesh.vertices[2].y, 4 * size);
+  }
+  EXPECT_NE(refusal(model_3mf("", "", "unit='parsec'")).find("unknown unit 'parsec'"),
+            std::string::npos);
+}
+
+TEST_F(Threemf, MirroredCopiesAreTurned) {
+  const Mesh mesh = read(model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>",
+                                   "<item objectid='1' transform='-1 0 0 0 1 0 0 0 1 0 0 0'/>"))
+                        .mesh;
+  EXPECT_EQ(mesh.triangles[0], (Triangle{0, 2, 1}));
+}
+
+TEST_F(Threemf, ColorsComeFromMaterialsAndGroups) {
+  const std::string groups =
+      "<basematerials id='5'><base name='red' displaycolor='#FF0000'/><base name='blue' "
+      "displaycolor='#0000FF80'/></basematerials><m:colorgroup id='6'><m:color color='#008000FF'/>"
+      "<m:color color='#FFFFFF'/></m:colorgroup>";
+  const auto color_of = [&](const std::string& object, const std::string& triangle) {
+    const MeshWithAppearance read_one =
+        read(model_3mf(groups + "<object id='1' " + object + ">" + kMesh3mf + triangle +
+                           "/></triangles></mesh></object>",
+                       "<item objectid='1'/>"));
+    const Material& material = read_one.appearance.materials[read_one.mesh.triangle_materials[0]];
+    Vec3f color = material.base_color;
+    if (!read_one.appearance.colors.empty()) color = color * read_one.appearance.colors[1].color();
+    return std::array{linear_to_srgb8(color.x), linear_to_srgb8(color.y), linear_to_srgb8(color.z)};
+  };
+  using Rgb = std::array<std::uint8_t, 3>;
+  EXPECT_EQ(color_of("pid='5' pindex='1'", ""), (Rgb{0, 0, 255}));
+  EXPECT_EQ(color_of("pid='5' pindex='1'", " p1='0'"), (Rgb{255, 0, 0}));
+  EXPECT_EQ(color_of("", " pid='6' p1='0'"), (Rgb{0, 128, 0}));
+  EXPECT_EQ(color_of("", " pid='6' p1='0' p2='1' p3='0'"), (Rgb{255, 255, 255}));
+  EXPECT_EQ(color_of("", ""), (Rgb{204, 204, 204}));
+}
+
+TEST_F(Threemf, ModelsOfOtherPartsAreRead) {
+  const Mesh mesh = read_mesh(
+      write({{"_rels/.rels",
+              "<Relationships><Relationship Target='/3D/root.model' "
+              "Type='http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel'/>"
+              "</Relationships>"},
+             {"3D/root.model", model_3mf("<object id='1'><components><component objectid='1' "
+                                         "p:path='/3D/other.model'/></components></object>",
+                                         "<item objectid='1'/>")},
+             {"3D/other.model",
+              model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>", "")}}));
+  EXPECT_EQ(mesh.triangles.size(), 1u);
+}
+
+TEST_F(Threemf, RefusesWhatIsDamagedOrWouldGrow) {
+  const auto has = [](const std::string& text, const char* part) {
+    return text.find(part) != std::string::npos;
+  };
+  const std::string file = (dir_ / "a.3mf").string();
+  EXPECT_TRUE(
+      has(refusal(model_3mf("<object id='1'>" + kMesh3mf +
+                                " /></triangles></mesh>"
+                                "<components><component objectid='1'/></components></object>",
+                            "<item objectid='1'/>")),
+          "components are nested more than 64 deep"));
+  EXPECT_TRUE(has(refusal("<!DOCTYPE model [<!ENTITY a 'b'>]><model/>"),
+                  (file + ": 3D/3dmodel.model, line 1: has a document type").c_str()));
+  EXPECT_TRUE(has(refusal(model_3mf("<object id='1'>", "")), "is not well-formed XML"));
+  EXPECT_TRUE(has(refusal(model_3mf("", "<item objectid='7'/>")), "has no object '7'"));
+  EXPECT_TRUE(has(refusal(model_3mf("", "")), "its build has no items"));
+  EXPECT_TRUE(has(refusal("<model>" + std::string(300, '\n') + "<a b='" +
+                          std::string(3 << 20, 'x') + "'/></model>"),
+                  "a name or a value has more than 1 MiB"));
+  std::string deep;
+  for (int i = 0; i < 300; ++i) deep += "<a>";
+  EXPECT_TRUE(has(refusal(deep), "nested more than 200 deep"));
+  EXPECT_TRUE(has(refusal(model_3mf("<object id='1'>" + kMesh3mf +
+                                        " /><triangle v1='0' v2='1' "
+                                        "v3='3'/></triangles></mesh></object>",
+                                    "<item objectid='1'/>")),
+                  "vertex '3' is no whole number from 0 to 3 (excluded)"));
+  // Objects that are doubled in each of 40 steps.
+  std::string doubled = "<object id='0'>" + kMesh3mf + "/></triangles></mesh></object>";
+  for (int i = 1; i <= 40; ++i) {
+    const std::string use = "<component objectid='" + std::to_string(i - 1) + "'/>";
+    doubled += "<object id='" + std::to_string(i) + "'><components>" + use + use +
+               "</components></object>";
+  }
+  MemoryBudget memory(64 << 20);
+  ReadOptions options;
+  options.work = &memory;
+  write({{"3D/3dmodel.model", model_3mf(doubled, "<item objectid='40'/>")}});
+  EXPECT_THROW(read_mesh(dir_ / "a.3mf", options), Error);
+  EXPECT_EQ(memory.used(), 0u);
+}
+
+TEST_F(Threemf, NoPrefixIsRead) {
+  write({{"3D/3dmodel.model",
+          model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>",
+                    "<item objectid='1'/>")}});
+  const std::string good = read_text(dir_ / "a.3mf");
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    std::filesystem::remove(dir_ / "b.3mf");
+    write_text(dir_ / "b.3mf", good.substr(0, size));
+    EXPECT_NE(error_of([&] { read_mesh(dir_ / "b.3mf"); }), "no error") << size;
+  }
+}
+
+std::string collada(const std::string& primitives, const std::string& node,
+                    const std::string& more = "") {
+  return "<COLLADA><asset><unit meter='0.01'/><up_axis>Z_UP</up_axis></asset><library_geometries>"
+         "<geometry id='g'><mesh><source id='p'><float_array id='f' count='12'>0 0 0 100 0 0\n"
+         "100 100 0 0 100 0</float_array><technique_common><accessor source='#f' count='4' "
+         "stride='3'/></technique_common></source><vertices id='v'><input semantic='POSITION' "
+         "source='#p'/></vertices>" +
+         primitives + "</mesh></geometry></library_geometries>" + more +
+         "<library_visual_scenes><visual_scene id='s'>" + node +
+         "</visual_scene></library_visual_scenes><scene><instance_visual_scene url='#s'/></scene>"
+         "</COLLADA>";
+}
+
+const std::string kInput = "<input semantic='VERTEX' source='#v' offset='0'/>";
+const std::string kNode = "<node><instance_geometry url='#g'/></node>";
+
+class Collada : public testing::Test {
+ protected:
+  MeshWithAppearance read(const std::string& text) const {
+    std::filesystem::remove(dir_ / "a.dae");
+    write_text(dir_ / "a.dae", text);
+    return read_mesh_with_appearance(dir_ / "a.dae");
+  }
+  const TempDir dir_;
+};
+
+TEST_F(Collada, EveryPrimitiveMakesTriangles) {
+  for (const auto& [primitive, count] :
+       {std::pair{"<triangles count='1'>" + kInput + "<p>0 1 2</p></triangles>", 1u},
+        {"<polylist count='2' material='m'>" + kInput +
+             "<input semantic='NORMAL' source='#n' offset='1'/><vcount>3 4</vcount><p>0 0 1 0 2 0 "
+             "0 0 1 0 2 0 3 0</p></polylist>",
+         3u},
+        {"<polygons count='1'>" + kInput + "<p>0 1 2 3</p></polygons>", 2u},
+        {"<tristrips count='1'>" + kInput + "<p>0 1 3 2</p></tristrips>", 2u},
+        {"<trifans count='1'>" + kInput + "<p>0 1 2 3</p></trifans>", 2u}}) {
+    const Mesh mesh = read(collada(primitive, kNode)).mesh;
+    ASSERT_EQ(mesh.triangles.size(), count) << primitive;
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3f a = mesh.vertices[t[0]];
+      EXPECT_GT(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a).z, 0) << primitive;
+    }
+    EXPECT_FLOAT_EQ(mesh.vertices[2].x, 1);  // Centimetres.
+  }
+}
+
+TEST_F(Collada, NodesAreTransformedInOrderAndTheAxesStay) {
+  const std::string triangle = "<triangles count='1'>" + kInput + "<p>0 1 2</p></triangles>";
+  const Mesh mesh =
+      read(collada(triangle,
+                   "<node><translate>100 0 0</translate><rotate>0 0 1 90</rotate><node><scale>2 1 "
+                   "-1</scale><matrix>1 0 0 0 0 1 0 0 0 0 1 300 0 0 0 1</matrix><instance_geometry "
+                   "url='#g'/></node></node>"))
+          .mesh;
+  const Vec3f corner = mesh.vertices[2];
+  EXPECT_NEAR(corner.x, 0, 1e-6);
+  EXPECT_NEAR(corner.y, 2, 1e-6);
+  EXPECT_NEAR(corner.z, -3, 1e-6);
+  EXPECT_EQ(mesh.triangles[0], (Triangle{0, 2, 1}));  // Mirrored.
+}
+
+TEST_F(Collada, DiffuseColorsAreReadAndWhatIsLeftOutIsSaid) {
+  const MeshWithAppearance result = read(collada(
+      "<triangles count='1' material='sym'>" + kInput +
+          "<input semantic='TEXCOORD' source='#t' offset='0'/><p>0 1 2</p></triangles>",
+      "<node><instance_geometry url='#g'><bind_material><technique_common><instance_material "
+      "symbol='sym' target='#m'/></technique_common></bind_material></instance_geometry></node>",
+      "<library_effects><effect id='e'><profile_COMMON><technique><lambert><diffuse><color>1 0 0 "
+      "1</color></diffuse></lambert></technique></profile_COMMON></effect></library_effects>"
+      "<library_materials><material id='m' name='red'><instance_effect url='#e'/></material>"
+      "</library_materials>"));
+  const Material& material = result.appearance.materials[result.mesh.triangle_materials[0]];
+  EXPECT_EQ(material.name, "red");
+  EXPECT_EQ(material.base_color, (Vec3f{1, 0, 0}));
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_NE(result.warnings[0].find("textures are not read"), std::string::npos);
+}
+
+TEST_F(Collada, RefusesWhatIsDamagedOrWouldGrow) {
+  const auto refusal = [&](const std::string& text) { return error_of([&] { read(text); }); };
+  const std::string triangle = "<triangles count='1'>" + kInput + "<p>0 1 2</p></triangles>";
+  const auto has = [](const std::string& text, const char* part) {
+    return text.find(part) != std::string::npos;
+  };
+  EXPECT_TRUE(
+      has(refusal(collada("<triangles count='1'>" + kInput + "<p>0 1 4</p></triangles>", kNode)),
+          "vertex '4' is no whole number from 0 to 4 (excluded)"));
+  EXPECT_TRUE(has(refusal(collada(triangle, "<node><instance_geometry url='#h'/></node>")),
+                  "there is no <geometry> of that id"));
+  EXPECT_TRUE(has(refusal(collada(triangle, "<node id='n'><instance_node url='#n'/></node>")),
+                  "nodes are nested more than 200 deep"));
+  EXPECT_TRUE(has(refusal(collada("", kNode)), "no triangles"));
+  const std::string good = collada(triangle, kNode);
+  for (std::size_t size = 0; size < good.size(); ++size)
+    EXPECT_NE(refusal(good.substr(0, size)), "no error") << size;
+}
+
+}  // namespace
+}  // namespace voxdag
