@@ -10,7 +10,7 @@
 namespace voxdag {
 namespace {
 
-const Box3d kBox{{1, 2, 3}, {9, 6, 5}};  // 8 units along x
+const Box3d kBounds{{1, 2, 3}, {9, 6, 5}};  // 8 units along x
 
 /// Returns the voxel of a vertex.
 Vec3i voxel_of(const Grid& grid, Vec3d vertex) {
@@ -20,9 +20,9 @@ Vec3i voxel_of(const Grid& grid, Vec3d vertex) {
 
 TEST(GridRequest, AnyResolutionSpansTheLongestSide) {
   for (const std::int64_t n : {1, 2, 3, 5, 10, 100, 1000, 1023, 1025, 1 << 20}) {
-    const Grid grid = grid_for(kBox, {.resolution = n});
-    EXPECT_EQ(voxel_of(grid, kBox.lo), (Vec3i{0, 0, 0})) << n;
-    EXPECT_EQ(voxel_of(grid, kBox.hi).x, n - 1) << n;
+    const Grid grid = grid_for(kBounds, {.resolution = n});
+    EXPECT_EQ(voxel_of(grid, kBounds.lo), (Vec3i{0, 0, 0})) << n;
+    EXPECT_EQ(voxel_of(grid, kBounds.hi).x, n - 1) << n;
     EXPECT_GE(grid.resolution(), n);
     EXPECT_LT(grid.resolution(), std::max<std::int64_t>(2 * n, 5)) << n;
   }
@@ -31,9 +31,9 @@ TEST(GridRequest, AnyResolutionSpansTheLongestSide) {
 TEST(GridRequest, PowersOfTwoAreTheGridsOfTheirLevels) {
   for (int levels = kMinLevels; levels <= kMaxLevels; ++levels) {
     const std::int64_t n = std::int64_t{1} << levels;
-    EXPECT_EQ(grid_for(kBox, {.resolution = n}), fit_grid(kBox, levels));
-    EXPECT_EQ(grid_for(Box3d::empty(), {.resolution = n, .bounds = kBox}),
-              grid_from_bounds(kBox, levels));
+    EXPECT_EQ(grid_for(kBounds, {.resolution = n}), fit_grid(kBounds, levels));
+    EXPECT_EQ(grid_for(Box3d::empty(), {.resolution = n, .bounds = kBounds}),
+              grid_from_bounds(kBounds, levels));
   }
   EXPECT_EQ(settings_of({.resolution = 64}).count("resolution"), 0u);
   EXPECT_EQ(settings_of({.resolution = 65}).at("resolution"), "65");
@@ -65,34 +65,34 @@ TEST(GridRequest, SnappedGridsOfOneVoxelSizeHaveTheirVoxelsAtTheSamePlaces) {
 }
 
 TEST(GridRequest, TheOriginIsTheLowerCornerAndTheGridEndsWithTheMesh) {
-  const Grid grid = grid_for(kBox, {.voxel_size = 1, .origin = Vec3d{-3, 0, 0}});
+  const Grid grid = grid_for(kBounds, {.voxel_size = 1, .origin = Vec3d{-3, 0, 0}});
   EXPECT_EQ(grid.origin, (Vec3d{-3, 0, 0}));
   EXPECT_EQ(grid.levels, 4);  // 13 voxels along x
-  const Grid divided = grid_for(kBox, {.resolution = 12, .origin = Vec3d{-3, 0, 0}});
-  EXPECT_EQ(voxel_of(divided, kBox.hi).x, 11);
-  EXPECT_NE(error_of([] { grid_for(kBox, {.voxel_size = 1, .origin = Vec3d{10, 0, 0}}); }), "");
+  const Grid divided = grid_for(kBounds, {.resolution = 12, .origin = Vec3d{-3, 0, 0}});
+  EXPECT_EQ(voxel_of(divided, kBounds.hi).x, 11);
+  EXPECT_NE(error_of([] { grid_for(kBounds, {.voxel_size = 1, .origin = Vec3d{10, 0, 0}}); }), "");
 }
 
 TEST(GridRequest, PaddingLeavesEmptyVoxelsOnEachSide) {
-  const Grid grid = grid_for(kBox, {.resolution = 16, .padding = 3});
+  const Grid grid = grid_for(kBounds, {.resolution = 16, .padding = 3});
   EXPECT_EQ(grid.levels, 4);
-  EXPECT_EQ(voxel_of(grid, kBox.lo), (Vec3i{3, 3, 3}));
-  EXPECT_EQ(voxel_of(grid, kBox.hi).x, 12);
-  const Grid sized = grid_for(kBox, {.voxel_size = 1, .padding = 4});
+  EXPECT_EQ(voxel_of(grid, kBounds.lo), (Vec3i{3, 3, 3}));
+  EXPECT_EQ(voxel_of(grid, kBounds.hi).x, 12);
+  const Grid sized = grid_for(kBounds, {.voxel_size = 1, .padding = 4});
   EXPECT_EQ(sized.origin, (Vec3d{-3, -2, -1}));
   EXPECT_EQ(sized.levels, 5);  // 9 voxels and 8 empty ones
-  EXPECT_NE(error_of([] { grid_for(kBox, {.resolution = 6, .padding = 3}); }), "");
+  EXPECT_NE(error_of([] { grid_for(kBounds, {.resolution = 6, .padding = 3}); }), "");
 }
 
 TEST(GridRequest, TheCentredContentHasAsMuchRoomOnBothSides) {
-  const Grid grid = grid_for(kBox, {.resolution = 10, .center = true});
-  const Vec3i first = voxel_of(grid, kBox.lo), last = voxel_of(grid, kBox.hi);
+  const Grid grid = grid_for(kBounds, {.resolution = 10, .center = true});
+  const Vec3i first = voxel_of(grid, kBounds.lo), last = voxel_of(grid, kBounds.hi);
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t above = grid.resolution() - 1 - last[axis];
     EXPECT_GE(above - first[axis], 0);
     EXPECT_LE(above - first[axis], 1);
   }
-  const Grid snapped = grid_for(kBox, {.voxel_size = 0.7, .snap = true, .center = true});
+  const Grid snapped = grid_for(kBounds, {.voxel_size = 0.7, .snap = true, .center = true});
   EXPECT_NEAR(std::remainder(snapped.origin.y, 0.7), 0, 1e-9);
 }
 

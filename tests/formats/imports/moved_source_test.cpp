@@ -11,10 +11,10 @@
 namespace voxdag {
 namespace {
 
-class Places : public VoxelSource {
+class ListedPlaces : public VoxelSource {
  public:
-  Places(std::vector<Vec3d> places, bool has_points, std::optional<Grid> grid = {},
-         std::vector<Rgb8> colors = {})
+  ListedPlaces(std::vector<Vec3d> places, bool has_points, std::optional<Grid> grid = {},
+               std::vector<Rgb8> colors = {})
       : places_(std::move(places)),
         has_points_(has_points),
         grid_(grid),
@@ -47,8 +47,9 @@ std::vector<Vec3d> places_of(const VoxelSource& source) {
 }
 
 TEST(MovedSource, PointsMoveInDoublePrecision) {
-  const auto source = moved_source(std::make_unique<Places>(std::vector<Vec3d>{{1, 2, 3}}, true),
-                                   transform("y:z", 2, {4'649'776.123, 0, 0}));
+  const auto source =
+      moved_source(std::make_unique<ListedPlaces>(std::vector<Vec3d>{{1, 2, 3}}, true),
+                   transform("y:z", 2, {4'649'776.123, 0, 0}));
   EXPECT_EQ(places_of(*source), (std::vector<Vec3d>{{4'649'778.123, -6, 4}}));
 }
 
@@ -58,7 +59,7 @@ TEST(MovedSource, VoxelsOfAGridTurnAroundTheOriginOfTheWorld) {
   grid.origin = {10, 20, 30};
   grid.voxel_size = 0.5;
   const auto source =
-      moved_source(std::make_unique<Places>(std::vector<Vec3d>{{1, 2, 3}}, false, grid),
+      moved_source(std::make_unique<ListedPlaces>(std::vector<Vec3d>{{1, 2, 3}}, false, grid),
                    transform("y:z", 3, {1, 0, 0}));
   const Grid moved = source->grid().value();
   EXPECT_EQ(moved.voxel_size, 1.5);
@@ -70,15 +71,16 @@ TEST(MovedSource, VoxelsOfAGridTurnAroundTheOriginOfTheWorld) {
 }
 
 TEST(MovedSource, VoxelsWithoutAPlaceTurnInTheirBox) {
-  const auto source = moved_source(
-      std::make_unique<Places>(std::vector<Vec3d>{{0, 0, 0}, {1, 2, 5}}, false), transform("y:z"));
+  const auto source =
+      moved_source(std::make_unique<ListedPlaces>(std::vector<Vec3d>{{0, 0, 0}, {1, 2, 5}}, false),
+                   transform("y:z"));
   EXPECT_EQ(places_of(*source), (std::vector<Vec3d>{{0, 5, 0}, {1, 0, 2}}));
 }
 
 TEST(MovedSource, VoxelsRefuseWhatTheyCannotDo) {
   const auto refusal = [](const InputTransform& by) {
     return error_of([&] {
-      moved_source(std::make_unique<Places>(std::vector<Vec3d>{{0, 0, 0}}, false), by);
+      moved_source(std::make_unique<ListedPlaces>(std::vector<Vec3d>{{0, 0, 0}}, false), by);
     });
   };
   EXPECT_NE(refusal(transform("", 1, {}, "x:45")).find("quarters"), std::string::npos);
@@ -87,9 +89,9 @@ TEST(MovedSource, VoxelsRefuseWhatTheyCannotDo) {
 
 TEST(JoinedSource, CloudsAreOneAndThoseWithoutColoursGrey) {
   std::vector<std::unique_ptr<VoxelSource>> sources;
-  sources.push_back(std::make_unique<Places>(std::vector<Vec3d>{{0, 0, 0}}, true, std::nullopt,
-                                             std::vector<Rgb8>{{1, 2, 3}}));
-  sources.push_back(std::make_unique<Places>(std::vector<Vec3d>{{5, 0, 0}}, true));
+  sources.push_back(std::make_unique<ListedPlaces>(std::vector<Vec3d>{{0, 0, 0}}, true,
+                                                   std::nullopt, std::vector<Rgb8>{{1, 2, 3}}));
+  sources.push_back(std::make_unique<ListedPlaces>(std::vector<Vec3d>{{5, 0, 0}}, true));
   const auto joined = joined_source(std::move(sources));
   std::vector<Rgb8> colors;
   joined->visit_all([&](const VoxelBatch& batch) {
@@ -104,19 +106,19 @@ TEST(JoinedSource, GridsThatCoincideBecomeOne) {
   a.levels = b.levels = 2;
   b.origin = {-3, 0, 2};
   std::vector<std::unique_ptr<VoxelSource>> sources;
-  sources.push_back(std::make_unique<Places>(std::vector<Vec3d>{{1, 1, 1}}, false, a));
-  sources.push_back(std::make_unique<Places>(std::vector<Vec3d>{{0, 0, 0}}, false, b));
+  sources.push_back(std::make_unique<ListedPlaces>(std::vector<Vec3d>{{1, 1, 1}}, false, a));
+  sources.push_back(std::make_unique<ListedPlaces>(std::vector<Vec3d>{{0, 0, 0}}, false, b));
   const auto joined = joined_source(std::move(sources));
   EXPECT_EQ(joined->grid()->origin, (Vec3d{-3, 0, 0}));
   EXPECT_EQ(places_of(*joined), (std::vector<Vec3d>{{4, 1, 1}, {0, 0, 2}}));
   std::vector<std::unique_ptr<VoxelSource>> mixed;
-  mixed.push_back(std::make_unique<Places>(std::vector<Vec3d>{{1, 1, 1}}, false, a));
-  mixed.push_back(std::make_unique<Places>(std::vector<Vec3d>{{0, 0, 0}}, false));
+  mixed.push_back(std::make_unique<ListedPlaces>(std::vector<Vec3d>{{1, 1, 1}}, false, a));
+  mixed.push_back(std::make_unique<ListedPlaces>(std::vector<Vec3d>{{0, 0, 0}}, false));
   EXPECT_NE(error_of([&] { joined_source(std::move(mixed)); }), "");
 }
 
 TEST(ImportPoints, AnyResolutionAndEachPlacementOfTheGrid) {
-  const Places points({{10.3, 20.7, 5.2}, {11.9, 20.1, 5.9}}, true);
+  const ListedPlaces points({{10.3, 20.7, 5.2}, {11.9, 20.1, 5.9}}, true);
   ImportOptions options;
   options.resolution = 10;
   EXPECT_EQ(import_voxels(points, options).grid.levels, 4);
