@@ -174,7 +174,7 @@ TEST_F(PartsJobFailures, AFolderOfAnotherJobIsRefused) {
   const auto error = [&] {
     return error_of([&] { build_in_parts(job, kProgram, ranks(), &unlimited); });
   };
-  job.grid.levels = 7;
+  job.grid.resolution = 128;
   EXPECT_EQ(error(), work().string() +
                          ": the folder belongs to a job with another resolution: 64, not 128; give "
                          "the same options, or another folder");

@@ -30,7 +30,6 @@ namespace voxdag {
 struct PartsJob {
   std::filesystem::path mesh, work_folder, output;
   GridRequest grid;
-  TransformRequest transform;
   /// Least number of parts, if the mesh meets enough cells; 0: a number that fits the ranks and
   /// their memory.
   std::uint64_t parts = 0;
@@ -39,6 +38,7 @@ struct PartsJob {
   std::size_t chunk_bytes = kChunkBytes;
   /// A DAG with more node words gets long pointers (stored/svdag/long_svdag.hpp). For tests.
   std::uint64_t most_plain_words = kMaxPlainWords;
+  TransformRequest transform = {};
 };
 
 enum class PartsStep { kTriangles, kParts, kMerge, kNumber, kWrite };
