@@ -12,12 +12,11 @@
 #include "voxdag/builders/solid/solid_settings.hpp"
 #include "voxdag/builders/voxelize/grid_request.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/float_origin.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/formats/imports/import_model.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
-#include "voxdag/mesh/mesh_bounds.hpp"
+#include "voxdag/mesh/place_vertices.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
 
 namespace py = pybind11;
@@ -97,9 +96,7 @@ MeshWithAppearance mesh_of(const Array<double>& vertices, const Array<std::int64
                                      static_cast<std::uint32_t>(face.y),
                                      static_cast<std::uint32_t>(face.z)});
   }
-  source.mesh.origin = float_origin(referenced_bounds(source.mesh));
-  for (std::size_t i = 0; i < points.size(); ++i)
-    source.mesh.vertices[i] = static_cast<Vec3f>(points[i] - source.mesh.origin);
+  place_vertices(source.mesh, [&](std::size_t i) { return points[i]; });
   source.appearance.materials.resize(1);
   if (!colors) return source;
   const std::vector<Vec3<std::uint8_t>> values = rows_of(*colors, "colors");

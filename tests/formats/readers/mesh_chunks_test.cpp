@@ -149,11 +149,15 @@ TEST_F(MeshChunksTest, AnOriginIsSubtractedBeforeRounding) {
     chunks->set_origin({1e6, 0, -1});
     chunks->read_vertices(0, near);
     for (std::size_t i = 0; i < near.size(); ++i) {
-      if (path != obj) EXPECT_EQ(near[i].x, static_cast<float>(double{far[i].x} - 1e6)) << path;
+      if (path != obj) {
+        EXPECT_EQ(near[i].x, static_cast<float>(double{far[i].x} - 1e6)) << path;
+      }
       EXPECT_EQ(near[i].y, far[i].y);
       EXPECT_EQ(near[i].z, far[i].z + 1);
     }
-    if (path == obj) EXPECT_EQ(near[1].x, static_cast<float>(1000000.1 - 1e6));
+    if (path == obj) {
+      EXPECT_EQ(near[1].x, static_cast<float>(1000000.1 - 1e6));
+    }
   }
 }
 

@@ -63,9 +63,10 @@ TEST(StlReader, WordsThatAreMissingDoubledOrSplitAreAWarning) {
     const auto read = read_bytes(text);
     EXPECT_EQ(read.mesh.triangles, kTriangles) << text;
     ASSERT_EQ(read.warnings.size(), irregular == 0 ? 0u : 1u) << text;
-    if (irregular > 0)
+    if (irregular > 0) {
       EXPECT_EQ(read.warnings[0].find("mesh: " + std::to_string(irregular) + " keyword"), 0u)
           << text;
+    }
   };
   const std::string end = "endsolid a facet of life\n", start = "solid a facet of life\n";
   expect_read(kTwoFacets, 0);
@@ -74,7 +75,7 @@ TEST(StlReader, WordsThatAreMissingDoubledOrSplitAreAWarning) {
   expect_read(with_all(kTwoFacets, end, ""), 1);
   expect_read(kTwoFacets + end, 1);
   expect_read(start + kTwoFacets, 1);
-  expect_read(with_all(kTwoFacets, start, "solid\nendsolid\n"), 1);
+  expect_read("solid\nendsolid\n" + kTwoFacets.substr(start.size()), 1);
 }
 
 TEST(StlReader, BinaryFilesMayBeginWithSolidAndHaveTrailingBytes) {

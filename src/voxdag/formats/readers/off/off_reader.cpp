@@ -244,8 +244,9 @@ class OffReader {
 
 bool is_off(std::string_view bytes) {
   bytes = without_byte_order_mark(bytes);
-  for (const std::string_view prefix : {"ST", "C", "N", "4", "n"})
-    if (bytes.starts_with(prefix)) bytes.remove_prefix(prefix.size());
+  for (int i = 0; i < 4; ++i)  // Prefixes, in any order.
+    for (const std::string_view prefix : {"ST", "C", "N", "4", "n"})
+      if (bytes.starts_with(prefix)) bytes.remove_prefix(prefix.size());
   return bytes.starts_with("OFF") && (bytes.size() == 3 || bytes[3] == '\n' || is_blank(bytes[3]) ||
                                       (bytes[3] >= '0' && bytes[3] <= '9'));
 }

@@ -99,7 +99,7 @@ class PlyFaces {
   /// Throws Fault if the material does not exist.
   void set_material(std::int64_t material, const char* position) {
     const std::uint64_t count = body_.header.materials.size();
-    if (body_.header.has_texture_numbers && static_cast<std::uint64_t>(material) + 1 >= count) {
+    if (body_.header.has_texture_numbers && static_cast<std::uint64_t>(material) >= count - 1) {
       if (body_.attributes != nullptr && material != -1) body_.attributes->count_bad_texture();
       material = static_cast<std::int64_t>(count) - 1;  // that without a texture
     }
