@@ -14,10 +14,10 @@ namespace voxdag {
 struct GridRequest {
   /// Voxels along the longest side, 1 to 2^kMaxLevels: a box in the least grid that holds it.
   /// Either this or voxel_size.
-  std::optional<std::int64_t> resolution;
-  std::optional<double> voxel_size;  ///< World units.
-  std::optional<Box3d> bounds;       ///< Without it, the grid lies around the mesh.
-  std::optional<Vec3d> origin;       ///< Lower corner of the grid, instead of that of the mesh.
+  std::optional<std::int64_t> resolution = {};
+  std::optional<double> voxel_size = {};  ///< World units.
+  std::optional<Box3d> bounds = {};       ///< Without it, the grid lies around the mesh.
+  std::optional<Vec3d> origin = {};  ///< Lower corner of the grid, instead of that of the mesh.
   bool snap = false;         ///< The origin is a multiple of voxel_size, which must be given.
   std::int64_t padding = 0;  ///< Empty voxels on each side, which count towards `resolution`.
   bool center = false;       ///< The content lies in the middle of the grid, to a whole voxel.
