@@ -227,8 +227,7 @@ ImportOptions options_of_voxels(const std::optional<std::int64_t>& resolution,
                                 const std::optional<Point>& origin) {
   if (pitch && !(*pitch > 0 && std::isfinite(*pitch)))
     throw py::value_error("pitch must be positive");
-  GridRequest request{std::nullopt, pitch, std::nullopt};
-  if (resolution) request.levels = levels_of(*resolution);
+  GridRequest request{.resolution = checked(resolution), .voxel_size = pitch};
   ImportOptions options = import_options(request);
   if (!origin) return options;
   options.origin = {(*origin)[0], (*origin)[1], (*origin)[2]};
@@ -325,8 +324,8 @@ void add_makers(py::module_& module) {
   module.def(
       "from_coords", &from_coords, py::arg("coords"), py::kw_only(), py::arg("resolution") = none,
       py::arg("pitch") = none, py::arg("origin") = none, py::arg("colors") = none,
-      "The DAG of voxels (N, 3), whole numbers. resolution: voxels per side of the grid, a "
-      "power of two; default: the least that holds them. pitch: side of a voxel (default 1); "
+      "The DAG of voxels (N, 3), whole numbers. resolution: voxels along the longest "
+      "side, 1 to 2^20; default: a grid that holds them. pitch: side of a voxel (default 1); "
       "origin: lower corner of voxel (0, 0, 0), world units. colors: (N, 3), sRGB: uint8, "
       "uint16, or real numbers from 0 to 1.");
   module.def("from_dense", &from_dense, py::arg("dense"), py::kw_only(),
