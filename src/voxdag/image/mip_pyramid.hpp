@@ -132,11 +132,14 @@ class MipPyramid {
     return sum;
   }
 
+  /// The half width of the bilinear filter, and of none, in texels, with a slack for rounding.
+  static constexpr float kBilinear = 0.51f, kUnfiltered = -0x1p-6f;
+
   /// Returns conservative bounds on the values of level 0 at all points of a box. A box that is not
-  /// finite stands for the whole image.
-  Bounds bounds(Vec2f lo, Vec2f hi) const {
-    Range x = texels_between(lo.x, hi.x, width(), wrap_u_);
-    Range y = texels_between(lo.y, hi.y, height(), wrap_v_);
+  /// finite stands for the whole image. With `reach` kUnfiltered, each texel is a square.
+  Bounds bounds(Vec2f lo, Vec2f hi, float reach = kBilinear) const {
+    Range x = texels_between(lo.x, hi.x, width(), wrap_u_, reach);
+    Range y = texels_between(lo.y, hi.y, height(), wrap_v_, reach);
     // Chooses the level in which the box covers at most three texels per side.
     const auto extent = static_cast<unsigned>(std::max(x.last - x.first, y.last - y.first));
     const int wanted = extent > 2 ? static_cast<int>(std::bit_width((extent - 1) / 2)) : 0;
@@ -255,12 +258,12 @@ class MipPyramid {
   }
 
   /// Returns the texels of level 0 that the values between lo and hi depend on: at most one period.
-  static Range texels_between(float lo, float hi, int size, TextureWrap wrap) {
+  static Range texels_between(float lo, float hi, int size, TextureWrap wrap, float reach) {
     const int period = wrap == TextureWrap::kMirror ? 2 * size : size;
     const float start = reduced(lo, wrap);
     const float end = wrap == TextureWrap::kClamp ? reduced(hi, wrap) : start + (hi - lo);
-    const float first = floor_of(start * static_cast<float>(size) - 0.51f);
-    const float last = floor_of(end * static_cast<float>(size) - 0.49f) + 1;
+    const float first = floor_of(start * static_cast<float>(size) - reach);
+    const float last = floor_of(end * static_cast<float>(size) - (1 - reach)) + 1;
     if (!(last - first < static_cast<float>(period)) && wrap != TextureWrap::kClamp)
       return {0, period - 1};
     if (!(last >= first)) return {0, size - 1};

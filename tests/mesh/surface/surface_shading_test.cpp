@@ -320,7 +320,9 @@ TEST(SurfaceShading, MissingTexturesAreWarningsThatNameTheReplacement) {
                              ": cannot open: No such file or directory: the material's "
                              "colour replaces the texture");
   EXPECT_EQ(warnings[1],
-            "mesh.glb: images[1]: byte 0: neither a PNG nor a JPEG image: the mesh's own normals "
+            "mesh.glb: images[1]: byte 0: not an image: PNG, JPEG, WebP, BMP and TGA images are "
+            "read: the "
+            "mesh's own normals "
             "replace the normal map");
   EXPECT_EQ(shading.mean(0, kWhole).color, (Vec3f{0.2f, 0.4f, 0.6f}));
   EXPECT_EQ(shading.mean(0, kWhole).normal, (Vec3f{0, 0, 1}));

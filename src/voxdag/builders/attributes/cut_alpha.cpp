@@ -50,7 +50,8 @@ class MaskedVoxels {
  private:
   bool is_visible(const Cell& cell, const TrianglePiece& piece) const {
     return !shading_.may_be_alpha_masked(cell.triangle_of(piece).source) ||
-           pieces_.sampler().sample(cell, piece).coverage > 0;
+           shading_.is_visible(cell.triangle_of(piece).source,
+                               pieces_.sampler().corners(cell, piece));
   }
 
   void collect(const NumberedCell& cell, std::uint64_t first, std::uint64_t code) {

@@ -174,6 +174,14 @@ bool SurfaceShading::is_alpha_masked(std::uint32_t t, std::span<const Vec2f> pol
          bounds_of(*material.color_texture, polygon, tables.uv(t), material.color_uv).hi[3] == 0;
 }
 
+bool SurfaceShading::is_visible(std::uint32_t t, std::span<const Vec2f> polygon) const {
+  const ResolvedMaterial& material = tables_->material(t);
+  if (mean(t, polygon, false).coverage == 0) return false;
+  if (!material.is_alpha_textured) return true;
+  const UvBox box = box_of(polygon, tables_->uv(t), material.color_uv);
+  return material.color_texture->bounds(box.lo, box.hi, Texture::kUnfiltered).hi[3] > 0;
+}
+
 bool SurfaceShading::may_be_alpha_masked(std::uint32_t t) const {
   const ResolvedMaterial& material = tables_->material(t);
   return material.is_alpha_textured ||

@@ -66,6 +66,10 @@ class SurfaceShading {
   /// it may return false for such a polygon too.
   bool is_alpha_masked(std::uint32_t triangle, std::span<const Vec2f> polygon) const;
 
+  /// Returns whether a part of the polygon passes the alpha test. Unlike is_alpha_masked(), this
+  /// leaves out the blur of the texture's filter: a texel is a square.
+  bool is_visible(std::uint32_t triangle, std::span<const Vec2f> polygon) const;
+
   /// Returns false only if is_alpha_masked() is false for every polygon of the triangle.
   bool may_be_alpha_masked(std::uint32_t triangle) const;
 
