@@ -14,7 +14,7 @@ namespace voxdag::python {
 namespace {
 
 /// Returns the rays of two arrays of shape (N, 3), or of one row and N.
-std::vector<Ray> rays_of(const py::array& origins, const py::array& directions, float t_min,
+std::vector<Ray> rays_of(const ArrayLike& origins, const ArrayLike& directions, float t_min,
                          float t_max) {
   const std::vector<Vec3f> from = rows_of<float>(origins, "origins");
   const std::vector<Vec3f> along = rows_of<float>(directions, "directions");
@@ -35,7 +35,7 @@ std::vector<Hit> cast_all(const Dag& dag, const std::vector<Ray>& rays) {
   });
 }
 
-py::dict cast(const Dag& dag, const py::array& origins, const py::array& directions, float t_min,
+py::dict cast(const Dag& dag, const ArrayLike& origins, const ArrayLike& directions, float t_min,
               float t_max) {
   const std::vector<Hit> hits = cast_all(dag, rays_of(origins, directions, t_min, t_max));
   std::vector<float> t(hits.size());
@@ -59,7 +59,7 @@ py::dict cast(const Dag& dag, const py::array& origins, const py::array& directi
   return result;
 }
 
-py::array_t<bool> occluded(const Dag& dag, const py::array& origins, const py::array& targets) {
+py::array_t<bool> occluded(const Dag& dag, const ArrayLike& origins, const ArrayLike& targets) {
   const std::vector<Vec3f> from = rows_of<float>(origins, "origins"),
                            to = rows_of<float>(targets, "targets");
   if (from.size() != to.size() && from.size() != 1 && to.size() != 1)

@@ -77,8 +77,8 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
 }
 
 /// Returns a mesh with the colours of its vertices, if there are some.
-MeshWithAppearance mesh_of(const py::array& vertices, const py::array& faces,
-                           const std::optional<py::array>& colors) {
+MeshWithAppearance mesh_of(const ArrayLike& vertices, const ArrayLike& faces,
+                           const std::optional<ArrayLike>& colors) {
   MeshWithAppearance source;
   const std::vector<Vec3f> points = rows_of<float>(vertices, "vertices");
   source.mesh.vertices.assign(points.begin(), points.end());
@@ -114,10 +114,10 @@ MeshWithAppearance mesh_of(const py::array& vertices, const py::array& faces,
   return source;
 }
 
-DagPointer build(const py::array& vertices, const py::array& faces,
+DagPointer build(const ArrayLike& vertices, const ArrayLike& faces,
                  std::optional<std::int64_t> resolution, std::optional<double> pitch,
                  std::optional<Bounds> bounds, const py::object& solid,
-                 const std::optional<py::array>& colors) {
+                 const std::optional<ArrayLike>& colors) {
   const GridRequest grid = grid_request(resolution, pitch, bounds);
   const std::optional<SolidRule> rule = rule_of(solid);
   if (rule && colors) throw py::value_error("a solid has no colours inside: leave out colors");
@@ -169,7 +169,7 @@ class ArraySource : public VoxelSource {
   bool has_points_;
 };
 
-std::vector<Rgb8> colors_of_rows(const std::optional<py::array>& colors, std::size_t rows) {
+std::vector<Rgb8> colors_of_rows(const std::optional<ArrayLike>& colors, std::size_t rows) {
   std::vector<Rgb8> result;
   if (!colors) return result;
   for (const Vec3<std::uint8_t> c : colors_of(*colors)) result.push_back({c.x, c.y, c.z});
@@ -188,6 +188,8 @@ ImportOptions import_options(const GridRequest& grid) {
   options.voxel_size = grid.voxel_size;
   options.bounds = grid.bounds;
   options.folder = std::filesystem::temp_directory_path();
+  // No channel of a colour differs by more than 5 %: the bound weighs blue with 1 of 7.
+  options.color_bound = 0.05 / std::sqrt(7.0);
   return options;
 }
 
@@ -209,9 +211,9 @@ ImportOptions options_of_voxels(const std::optional<std::int64_t>& resolution,
   return options;
 }
 
-DagPointer from_points(const py::array& points, std::optional<std::int64_t> resolution,
+DagPointer from_points(const ArrayLike& points, std::optional<std::int64_t> resolution,
                        std::optional<double> pitch, std::optional<Bounds> bounds,
-                       const std::optional<py::array>& colors) {
+                       const std::optional<ArrayLike>& colors) {
   const ImportOptions options = import_options(grid_request(resolution, pitch, bounds));
   std::vector<Vec3d> places = rows_of<double>(points, "points");
   std::vector<Rgb8> values = colors_of_rows(colors, places.size());
@@ -219,9 +221,9 @@ DagPointer from_points(const py::array& points, std::optional<std::int64_t> reso
   return run_work([&](Work work) { return import_source(source, options, "points", work); });
 }
 
-DagPointer from_coords(const py::array& coords, std::optional<std::int64_t> resolution,
+DagPointer from_coords(const ArrayLike& coords, std::optional<std::int64_t> resolution,
                        const std::optional<double>& pitch, const std::optional<Point>& origin,
-                       const std::optional<py::array>& colors) {
+                       const std::optional<ArrayLike>& colors) {
   const ImportOptions options = options_of_voxels(resolution, pitch, origin);
   std::vector<Vec3d> places;
   for (const Vec3i v : voxels_of(coords, "coords")) places.push_back(Vec3d(v));
@@ -230,7 +232,7 @@ DagPointer from_coords(const py::array& coords, std::optional<std::int64_t> reso
   return run_work([&](Work work) { return import_source(source, options, "coords", work); });
 }
 
-DagPointer from_dense(const py::array& given, std::optional<std::int64_t> resolution,
+DagPointer from_dense(const ArrayLike& given, std::optional<std::int64_t> resolution,
                       const std::optional<double>& pitch, const std::optional<Point>& origin) {
   if (given.ndim() != 3) throw py::value_error("dense must have three dimensions: x, y, z");
   kind_of(given, "dense", "biu", "bool or whole numbers: compare real ones, dense > 0.5");
@@ -262,11 +264,13 @@ DagPointer import_file(const std::filesystem::path& path, std::optional<std::int
     options.bounds = {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
   }
   options.colors = colors;
+  options.color_bound = std::nullopt;  // That of `voxdag import`.
   std::vector<std::string> warnings;
   DagPointer dag = run_work([&](Work work) {
     return with_file_name(path.string(), [&] {
       const std::unique_ptr<VoxelSource> source = open_voxel_source(
-          path, {.threshold = threshold, .use_placement = !pitch && !origin, .grid = grid, .work = work});
+          path,
+          {.threshold = threshold, .use_placement = !pitch && !origin, .grid = grid, .work = work});
       warnings = source->warnings();
       check_grid_options(*source, options);
       return import_source(*source, options, path.filename().string(), work);
