@@ -5,11 +5,19 @@
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag::python {
+
+/// An argument that NumPy makes an array of: an array of any type, or lists of lists.
+class ArrayLike : public pybind11::array {
+ public:
+  ArrayLike() = default;
+  explicit ArrayLike(pybind11::array of) : pybind11::array(std::move(of)) {}
+};
 
 template <class T>
 using Array = pybind11::array_t<T, pybind11::array::c_style | pybind11::array::forcecast>;
@@ -65,3 +73,19 @@ pybind11::array_t<T> array_of(const std::vector<T>& values) {
 }
 
 }  // namespace voxdag::python
+
+namespace pybind11::detail {
+
+template <>
+struct type_caster<voxdag::python::ArrayLike> {
+  PYBIND11_TYPE_CASTER(voxdag::python::ArrayLike, const_name("ArrayLike"));
+
+  bool load(handle source, bool) {
+    array made = array::ensure(source);
+    if (!made) return false;
+    value = voxdag::python::ArrayLike(std::move(made));
+    return true;
+  }
+};
+
+}  // namespace pybind11::detail

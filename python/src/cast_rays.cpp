@@ -17,7 +17,7 @@ namespace {
 /// Returns the place from which the origins of rays are measured, because rays are in float32.
 Vec3d near(const Dag& dag) { return float_origin(dag.grid().bounds()); }
 
-std::vector<Vec3f> points_of(const Dag& dag, const py::array& array, const char* name) {
+std::vector<Vec3f> points_of(const Dag& dag, const ArrayLike& array, const char* name) {
   const Vec3d origin = near(dag);
   std::vector<Vec3f> points;
   for (const Vec3d p : rows_of<double>(array, name))
@@ -26,7 +26,7 @@ std::vector<Vec3f> points_of(const Dag& dag, const py::array& array, const char*
 }
 
 /// Returns the rays of two arrays of shape (N, 3), or of one row and N.
-std::vector<Ray> rays_of(const Dag& dag, const py::array& origins, const py::array& directions,
+std::vector<Ray> rays_of(const Dag& dag, const ArrayLike& origins, const ArrayLike& directions,
                          float t_min, float t_max) {
   const std::vector<Vec3f> from = points_of(dag, origins, "origins");
   const std::vector<Vec3f> along = rows_of<float>(directions, "directions");
@@ -49,7 +49,7 @@ std::vector<Hit> cast_all(const Dag& dag, const std::vector<Ray>& rays) {
   });
 }
 
-py::dict cast(const Dag& dag, const py::array& origins, const py::array& directions, float t_min,
+py::dict cast(const Dag& dag, const ArrayLike& origins, const ArrayLike& directions, float t_min,
               float t_max) {
   const std::vector<Hit> hits = cast_all(dag, rays_of(dag, origins, directions, t_min, t_max));
   std::vector<float> t(hits.size());
@@ -73,7 +73,7 @@ py::dict cast(const Dag& dag, const py::array& origins, const py::array& directi
   return result;
 }
 
-py::array_t<bool> occluded(const Dag& dag, const py::array& origins, const py::array& targets) {
+py::array_t<bool> occluded(const Dag& dag, const ArrayLike& origins, const ArrayLike& targets) {
   const std::vector<Vec3f> from = points_of(dag, origins, "origins"),
                            to = points_of(dag, targets, "targets");
   if (from.size() != to.size() && from.size() != 1 && to.size() != 1)

@@ -105,8 +105,8 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
 }
 
 /// Returns a mesh with the colours of its vertices, if there are some.
-MeshWithAppearance mesh_of(const py::array& vertices, const py::array& faces,
-                           const std::optional<py::array>& colors) {
+MeshWithAppearance mesh_of(const ArrayLike& vertices, const ArrayLike& faces,
+                           const std::optional<ArrayLike>& colors) {
   MeshWithAppearance source;
   const std::vector<Vec3d> points = rows_of<double>(vertices, "vertices");
   source.mesh.vertices.reserve(points.size());
@@ -144,10 +144,10 @@ MeshWithAppearance mesh_of(const py::array& vertices, const py::array& faces,
   return source;
 }
 
-DagPointer build(const py::array& vertices, const py::array& faces,
+DagPointer build(const ArrayLike& vertices, const ArrayLike& faces,
                  std::optional<std::int64_t> resolution, std::optional<double> pitch,
                  std::optional<Bounds> bounds, const py::object& solid,
-                 const std::optional<py::array>& colors) {
+                 const std::optional<ArrayLike>& colors) {
   const GridRequest grid = grid_request(resolution, pitch, bounds);
   const std::optional<SolidRule> rule = rule_of(solid);
   const MeshWithAppearance source = mesh_of(vertices, faces, colors);
@@ -198,7 +198,7 @@ class ArraySource : public VoxelSource {
   bool has_points_;
 };
 
-std::vector<Rgb8> colors_of_rows(const std::optional<py::array>& colors, std::size_t rows) {
+std::vector<Rgb8> colors_of_rows(const std::optional<ArrayLike>& colors, std::size_t rows) {
   std::vector<Rgb8> result;
   if (!colors) return result;
   for (const Vec3<std::uint8_t> c : colors_of(*colors)) result.push_back({c.x, c.y, c.z});
@@ -215,6 +215,8 @@ ImportOptions import_options(const GridRequest& grid) {
   ImportOptions options;
   static_cast<GridRequest&>(options) = grid;
   options.folder = std::filesystem::temp_directory_path();
+  // No channel of a colour differs by more than 5 %: the bound weighs blue with 1 of 7.
+  options.color_bound = 0.05 / std::sqrt(7.0);
   return options;
 }
 
@@ -235,9 +237,9 @@ ImportOptions options_of_voxels(const std::optional<std::int64_t>& resolution,
   return options;
 }
 
-DagPointer from_points(const py::array& points, std::optional<std::int64_t> resolution,
+DagPointer from_points(const ArrayLike& points, std::optional<std::int64_t> resolution,
                        std::optional<double> pitch, std::optional<Bounds> bounds,
-                       const std::optional<py::array>& colors) {
+                       const std::optional<ArrayLike>& colors) {
   const ImportOptions options = import_options(grid_request(resolution, pitch, bounds));
   std::vector<Vec3d> places = rows_of<double>(points, "points");
   std::vector<Rgb8> values = colors_of_rows(colors, places.size());
@@ -245,9 +247,9 @@ DagPointer from_points(const py::array& points, std::optional<std::int64_t> reso
   return run_work([&](Work work) { return import_source(source, options, "points", work); });
 }
 
-DagPointer from_coords(const py::array& coords, std::optional<std::int64_t> resolution,
+DagPointer from_coords(const ArrayLike& coords, std::optional<std::int64_t> resolution,
                        const std::optional<double>& pitch, const std::optional<Point>& origin,
-                       const std::optional<py::array>& colors) {
+                       const std::optional<ArrayLike>& colors) {
   const ImportOptions options = options_of_voxels(resolution, pitch, origin);
   std::vector<Vec3d> places;
   for (const Vec3i v : voxels_of(coords, "coords")) places.push_back(Vec3d(v));
@@ -256,7 +258,7 @@ DagPointer from_coords(const py::array& coords, std::optional<std::int64_t> reso
   return run_work([&](Work work) { return import_source(source, options, "coords", work); });
 }
 
-DagPointer from_dense(const py::array& given, std::optional<std::int64_t> resolution,
+DagPointer from_dense(const ArrayLike& given, std::optional<std::int64_t> resolution,
                       const std::optional<double>& pitch, const std::optional<Point>& origin) {
   if (given.ndim() != 3) throw py::value_error("dense must have three dimensions: x, y, z");
   kind_of(given, "dense", "biu", "bool or whole numbers: compare real ones, dense > 0.5");
@@ -288,6 +290,7 @@ DagPointer import_file(const std::filesystem::path& path, std::optional<std::int
     options.bounds = {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
   }
   options.colors = colors;
+  options.color_bound = std::nullopt;  // That of `voxdag import`.
   std::vector<std::string> warnings;
   DagPointer dag = run_work([&](Work work) {
     return with_file_name(path.string(), [&] {

@@ -25,7 +25,7 @@ Vec3d to_grid(const Grid& grid, Vec3d world) {
   return (world - grid.origin) * (1 / grid.voxel_size);
 }
 
-py::array_t<bool> contains(const Dag& dag, const py::array& points) {
+py::array_t<bool> contains(const Dag& dag, const ArrayLike& points) {
   const std::vector<Vec3d> places = rows_of<double>(points, "points");
   py::array_t<bool> result(static_cast<py::ssize_t>(places.size()));
   bool* const inside = result.mutable_data();
@@ -39,7 +39,7 @@ py::array_t<bool> contains(const Dag& dag, const py::array& points) {
   return result;
 }
 
-py::dict nearest(const Dag& dag, const py::array& points) {
+py::dict nearest(const Dag& dag, const ArrayLike& points) {
   const std::vector<Vec3d> places = rows_of<double>(points, "points");
   std::vector<Vec3i> voxels(places.size(), Vec3i{-1, -1, -1});
   std::vector<double> distances(places.size(), HUGE_VAL);
@@ -70,7 +70,7 @@ py::array_t<std::int32_t> coords(const Dag& dag, const std::optional<Window>& wi
   }));
 }
 
-py::object colors(const Dag& dag, const py::array& voxels) {
+py::object colors(const Dag& dag, const ArrayLike& voxels) {
   LookReader look(dag.look());
   if (!look.has_colors()) throw py::value_error("the DAG has no colours");
   std::vector<Value8> values;

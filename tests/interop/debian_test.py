@@ -91,12 +91,12 @@ class Exports(unittest.TestCase):
         self.expect_colors(mesh.vertex_colors)
 
     def test_faces_are_merged(self):
-        grey = self.mesh("grey.glb", "--grey")
+        grey = self.mesh("grey.glb", "--grey", "--merge")
         self.expect_surface(grey)
         self.assertLess(len(grey.triangles), 2 * 0.8 * sum(self.surface["faces"]))
 
     def test_stl(self):
-        mesh = self.mesh("a.stl")
+        mesh = self.mesh("a.stl", "--watertight")
         self.expect_surface(mesh)
         # The volume that the triangles enclose, from their tetrahedra with the origin.
         corners = numpy.asarray(mesh.vertices)[numpy.asarray(mesh.triangles)]

@@ -38,7 +38,8 @@ std::uint16_t linear16(std::uint8_t srgb) {
 
 /// Returns the PNG file of an image, padded with zeros to a multiple of 4 bytes.
 std::string png_bytes(const ImageRgb8& image) {
-  const Descriptor memory(memfd_create("texture", MFD_CLOEXEC));
+  // AtomicFile writes to no descriptor with MFD_CLOEXEC.
+  const Descriptor memory(memfd_create("texture", 0));
   const std::string path = "/proc/self/fd/" + std::to_string(memory.get());
   write_png(path, image);
   std::string bytes(MappedFile(path).text());
