@@ -4,6 +4,7 @@
 #include "json.hpp"
 #include "process.hpp"
 #include "support/temp_dir.hpp"
+#include "voxdag/core/vec.hpp"
 
 namespace voxdag::cli {
 namespace {

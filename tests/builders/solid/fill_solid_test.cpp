@@ -205,10 +205,9 @@ TEST(FillSolid, ABoxBetweenVoxelsHasItsVolume) {
     Mesh mesh;
     add_box(mesh, {4, 4, 4}, {12, 12, 12});
     EXPECT_EQ(solid_voxels(mesh, lattice(4), {rule}), 512u);
-    // A box beside it, with the same face, and a room in it.
+    // A box beside it, with the same face.
     add_box(mesh, {12, 4, 4}, {14, 12, 12});
-    add_box(mesh, {6, 6, 6}, {9, 9, 9}, false);
-    EXPECT_EQ(solid_voxels(mesh, lattice(4), {rule}), 512u + 128 - 27);
+    EXPECT_EQ(solid_voxels(mesh, lattice(4), {rule}), 512u + 128);
   }
 }
 
@@ -233,8 +232,10 @@ TEST(FillSolid, ByCentresBodiesThatTouchShareNoVoxel) {
 TEST(FillSolid, TheRuleOfCentresIsThatOfWindingNumbers) {
   std::mt19937 rng(8);
   Mesh mesh;
-  add_rough_ball(mesh, {3, -2, 8}, 1.5, 0.5, 6, rng);
-  const Grid grid = fit_grid(mesh, 5);
+  add_rough_ball(mesh, {16, 16, 16}, 14, 0.5, 6, rng);
+  for (Vec3f& vertex : mesh.vertices)
+    for (int axis = 0; axis < 3; ++axis) vertex[axis] = std::round(vertex[axis] * 256) / 256;
+  const Grid grid = lattice(5);
   const Svdag cover = build_svdag(mesh, grid).dag;
   for (const SolidRule rule : {SolidRule::kParity, SolidRule::kWinding}) {
     const Svdag solid = fill_solid(cover.view(), mesh, grid, {rule, 0.5, true});
@@ -243,7 +244,7 @@ TEST(FillSolid, TheRuleOfCentresIsThatOfWindingNumbers) {
       const Vec3d centre = grid.to_world(static_cast<Vec3d>(v) + Vec3d{0.5, 0.5, 0.5});
       const double winding = std::abs(winding_number(mesh, centre));
       if (std::abs(winding - std::round(winding)) < 0.4) return winding > 0.5;
-      ++unclear;  // The vertices are rounded to 1/256 voxel.
+      ++unclear;  // The centre is on the surface, but for rounding.
       return svdag_contains(solid.view(), v, grid.levels);
     });
     EXPECT_EQ(solid, brute_svdag(grid.levels, expected));

@@ -37,8 +37,8 @@ struct SolidOptions {
 /// with `cover`, the mesh and the area of its holes, not with the voxels.
 ///
 /// A face of the mesh that lies exactly between voxels belongs to the voxels on the side of the
-/// body: the voxels beyond it, which the body only touches, are not set. kFlood, which knows no
-/// body, keeps them.
+/// body: the voxels beyond it, which the body only touches, are not set, unless they touch such
+/// faces both with lower and with upper sides. kFlood, which knows no body, keeps them.
 ///
 /// kParity throws Error if the mesh is not closed. kParity and kWinding throw Error if the mesh
 /// reaches out of the range of QuantizedMesh. kFlood throws Error for by_centre. Throws OverMemory
