@@ -28,6 +28,19 @@ CUBE_FACES = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0
                        [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])
 
 
+def test_meshes_and_rays_far_from_zero_keep_their_digits():
+    place = np.array([500_000.0, 4_649_776.0, 100.0])
+    near = voxdag.build(CUBE * 0.37 + 0.1125, CUBE_FACES, resolution=64, bounds=((0, 0, 0), (1, 1, 1)))
+    far = voxdag.build(CUBE * 0.37 + 0.1125 + place, CUBE_FACES, resolution=64,
+                       bounds=(tuple(place), tuple(place + 1)))
+    assert as_set(near.coords()) == as_set(far.coords())
+    centres = (near.coords() + 0.5) / 64
+    assert far.contains(centres + place).all()
+    along = np.array([[0.0, 0.0, 1.0]])
+    start = centres * [1, 1, 0] - [0, 0, 1]
+    assert (near.cast(start, along)["voxel"] == far.cast(start + place, along)["voxel"]).all()
+
+
 def test_coords_come_back():
     coords = random_coords(64, 500)
     dag = voxdag.from_coords(coords, resolution=64)

@@ -67,6 +67,14 @@ TEST_F(Query, PointsHaveTheirNearestVoxels) {
     points.push_back(static_cast<float>(grid.origin[i % 3] + at(rng) * grid.side()));
   write_rows("points.npy", 3, points);
   ASSERT_EQ(query({"--points", path("points.npy"), "-o", path("answers.npy")}).status, 0);
+  {
+    const std::vector<double> doubles(points.begin(), points.end());
+    NpyWriter writer(path("doubles.npy"), "<f8", {3}, sizeof(double), points.size() / 3);
+    writer.write_rows(doubles.data(), points.size() / 3);
+    writer.commit();
+  }
+  ASSERT_EQ(query({"--points", path("doubles.npy"), "-o", path("same.npy")}).status, 0);
+  EXPECT_EQ(read_text(path("same.npy")), read_text(path("answers.npy")));
   const auto rows = rows_of("answers.npy",
                             "[('occupied', '|b1'), ('voxel', '<i4', (3,)), ('nearest', '<i4', "
                             "(3,)), ('distance', '<f4')]",
