@@ -48,6 +48,7 @@ Grid grid_for(const Box3d& mesh_bounds, const GridRequest& request) {
   if (request.snap && request.voxel_size && !box.is_empty())
     for (int axis = 0; axis < 3; ++axis)
       box.lo[axis] = multiple_below(box.lo[axis], *request.voxel_size);
+  if (request.snap && !mesh_bounds.is_empty()) box.hi = max(box.hi, box.lo);
   Grid grid;
   if (request.resolution) {
     const std::int64_t inner = *request.resolution - 2 * request.padding;
@@ -90,8 +91,9 @@ std::map<std::string, std::string> settings_of(const GridRequest& request) {
                     : request.origin ? "origin"
                                      : "mesh"},
       {"scale_from", request.resolution ? "resolution" : "voxel_size"}};
-  if (request.resolution && !std::has_single_bit(static_cast<std::uint64_t>(*request.resolution)))
-    settings["resolution"] = std::to_string(*request.resolution);
+  const std::int64_t n = request.resolution.value_or(1 << kMinLevels);
+  if (n < 1 << kMinLevels || !std::has_single_bit(static_cast<std::uint64_t>(n)))
+    settings["resolution"] = std::to_string(n);
   if (request.snap) settings["snap"] = "yes";
   if (request.padding != 0) settings["padding"] = std::to_string(request.padding);
   if (request.center) settings["center"] = "yes";
