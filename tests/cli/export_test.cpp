@@ -83,7 +83,7 @@ TEST_F(ExportCommand, StandardInputAndOutputAreDashes) {
   }
   const ProcessResult none = run_shell(dir_->path().string(), "$V build - -r 32 -o p.vdag");
   EXPECT_EQ(none.status, 1);
-  EXPECT_EQ(none.err, "voxdag: -: the file is empty\n");
+  EXPECT_EQ(none.err, "voxdag: -: is not a regular file\n");
 }
 
 TEST_F(ExportCommand, ANamelessImportNeedsAFormat) {
