@@ -46,7 +46,7 @@ ColoredVoxels from_zero(const ColoredVoxels& voxels) {
 
 TEST(ExportScene, VoxFilesStandUprightAndComeBack) {
   const TempDir dir;
-  const ColoredScene scene(6);
+  const ColoredScene scene(2);  // has fewer colours than a palette
   for (const bool has_window : {false, true}) {
     ExportOptions options = scene.options;
     if (has_window) options.window = kWindow;

@@ -1,6 +1,7 @@
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 
 #include "formats/readers/mesh_text.hpp"
+#include "voxdag/formats/readers/used_vertices.hpp"
 
 namespace voxdag {
 namespace {
@@ -72,6 +73,17 @@ TEST(ObjReader, ObjectsAndGroupsAreKeptOnRequest) {
   const Mesh mesh = read_obj(source, ReadParts::kMesh).mesh;
   EXPECT_EQ(mesh.objects, (std::vector<std::string>{"default", "lid", "box two"}));
   EXPECT_EQ(mesh.object_runs, (std::vector<ObjectRun>{{0, 0}, {1, 1}, {3, 2}, {4, 1}}));
+}
+
+TEST(ObjReader, ObjectsKeepTheirTrianglesIfOthersAreLeftOut) {
+  const std::string text =
+      std::string(kSquare) + "v nan 0 0\no a\nf 1 2 5\nf 1 2 3\no b\nf 3 4 5\no c\nf 1 3 4\n";
+  MeshSource source{text, "mesh", {}, nullptr, {}};
+  source.options.objects = true;
+  MeshWithAppearance read = read_obj(source, ReadParts::kMesh);
+  remove_bad_triangles(source, used_vertices(source, read.mesh).bad_triangles, read);
+  EXPECT_EQ(read.mesh.triangles.size(), 2u);
+  EXPECT_EQ(read.mesh.object_runs, (std::vector<ObjectRun>{{0, 0}, {1, 1}, {1, 2}}));
 }
 
 TEST(ObjReader, FacesBeforeAnyMaterialHaveTheUnnamedOne) {

@@ -56,6 +56,11 @@ void remove_bad_triangles(const MeshSource& source, std::uint64_t bad_triangles,
   keep(appearance.normals, 3, is_good);
   keep(appearance.uvs, 3, is_good);
   keep(appearance.colors, 3, is_good);
+  std::uint64_t triangle = 0, left_out = 0;
+  for (ObjectRun& run : mesh.object_runs) {
+    for (; triangle < run.first_triangle; ++triangle) left_out += is_good(triangle) ? 0 : 1;
+    run.first_triangle -= left_out;
+  }
   keep(mesh.triangles, 1, is_good);  // Last: the others ask for the triangles.
   warnings.push_back(bad_triangles_warning(source.name, bad_triangles));
 }
