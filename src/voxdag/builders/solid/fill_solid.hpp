@@ -28,6 +28,7 @@ struct SolidOptions {
   double winding_threshold = 0.5;  ///< Positive; for kWinding.
   /// Sets a voxel if and only if its centre is inside, also where the surface passes. A centre on
   /// the surface belongs to one side, so that bodies that touch share no voxel. Not for kFlood.
+  /// kWinding takes a point that lies less than 1/256 voxel beside the centre.
   bool by_centre = false;
 };
 
