@@ -49,7 +49,7 @@ void load_pieces(PieceStack& pieces, const PieceSampler& sampler, const Triangle
   const Vec3i origin = cell * (1 << log2_size);
   const UnitCube cube(origin, log2_size);
   const Box3d box = world_box(grid, cell, log2_size);
-  const auto add = [&](SurfaceTriangle surface, std::uint32_t triangle) {
+  const auto add = [&](SurfaceTriangle&& surface, std::uint32_t triangle) {
     surface.constant_sample = sampler.constant_sample(surface);
     pieces.add(surface, triangle);
   };
