@@ -154,6 +154,22 @@ TEST_F(Import, TextsOfPointsAreRead) {
   EXPECT_NE(error("").find("has no points"), std::string::npos);
 }
 
+TEST_F(Import, TextsTellTheRangeOfTheirColors) {
+  const auto color_of = [&](const std::string& text) {
+    write_text(path("p.csv"), text);
+    Rgb8 color{};
+    open_voxel_source(path("p.csv"))->visit_all([&](const VoxelBatch& batch) {
+      if (!batch.colors.empty()) color = batch.colors[0];
+    });
+    return color;
+  };
+  EXPECT_EQ(color_of("x,y,z,r,g,b\n0.5,0.5,0.5,1.0,0.0,0.0\n"), (Rgb8{255, 0, 0}));
+  EXPECT_EQ(color_of("x,y,z,r,g,b\n0,0,0,1,0,1\n"), (Rgb8{1, 0, 1}));
+  EXPECT_EQ(color_of("x,y,z,r,g,b\n0,0,0,65535,0,257\n"), (Rgb8{255, 0, 1}));
+  EXPECT_EQ(color_of("1 2 3 255 128 0\n"), (Rgb8{255, 128, 0}));
+  EXPECT_EQ(color_of("1 2 3 0 0 1 255 128 0\n"), (Rgb8{255, 128, 0}));  // behind a normal
+}
+
 /// Returns a binvox file of a grid of `side` voxels.
 std::string binvox_of(int side, const std::vector<Vec3i>& voxels) {
   const auto n = static_cast<std::size_t>(side);

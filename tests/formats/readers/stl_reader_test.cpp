@@ -76,6 +76,7 @@ TEST(StlReader, WordsThatAreMissingDoubledOrSplitAreAWarning) {
   expect_read(kTwoFacets + end, 1);
   expect_read(start + kTwoFacets, 1);
   expect_read("solid\nendsolid\n" + kTwoFacets.substr(start.size()), 1);
+  expect_read(kTwoFacets.substr(start.size()), 1);
 }
 
 TEST(StlReader, BinaryFilesMayBeginWithSolidAndHaveTrailingBytes) {

@@ -60,8 +60,9 @@ TEST_F(Threemf, ItemsAndComponentsAreTransformed) {
                "<object id='1'>" + kMesh3mf +
                    "/></triangles></mesh></object><object id='2'>"
                    "<components><component objectid='1' transform='0 1 0 -1 0 0 0 0 1 10 0 0'/>"
-                   "</components></object>",
-               "<item objectid='2' transform='1 0 0 0 1 0 0 0 1 0 0 5'/>"))
+                   "</components></object><object id='3' type='support'>" +
+                   kMesh3mf + "/></triangles></mesh></object>",
+               "<item objectid='2' transform='1 0 0 0 1 0 0 0 1 0 0 5'/><item objectid='3'/>"))
           .mesh;
   ASSERT_EQ(mesh.vertices.size(), 3u);
   EXPECT_EQ(mesh.vertices[0], (Vec3f{8, 1, 8}));

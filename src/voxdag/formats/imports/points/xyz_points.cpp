@@ -179,17 +179,18 @@ class XyzPoints : public VoxelSource {
   }
 
   /// Finds colours without names: three columns of whole numbers to 255 behind the coordinates, or
-  /// behind a column more, the intensity of .pts files.
+  /// behind a normal, or behind a column more, the intensity of .pts files.
   void find_colors() {
     std::size_t points = 0, fewest = SIZE_MAX;
-    std::array<bool, 7> is_byte;
+    constexpr std::size_t kColumns = 9;
+    std::array<bool, kColumns> is_byte;
     is_byte.fill(true);
-    std::array<double, 7> greatest{};
+    std::array<double, kColumns> greatest{};
     for_each_line([&](std::string_view line, std::uint64_t) {
       if (count_of(line)) return true;
       const std::vector<std::string_view> fields = fields_of(line);
       fewest = std::min(fewest, fields.size());
-      for (std::size_t i = kCoordinates; i < std::min<std::size_t>(7, fields.size()); ++i) {
+      for (std::size_t i = kCoordinates; i < std::min(kColumns, fields.size()); ++i) {
         double value = 0;
         is_byte[i] &= std::all_of(fields[i].begin(), fields[i].end(), is_digit) &&
                       parse_float(fields[i], value) && value <= 255;
@@ -198,12 +199,13 @@ class XyzPoints : public VoxelSource {
       return ++points < kSampledPoints;
     });
     if (points == 0 || fewest <= kCoordinates) return;
-    for (const std::size_t first : {std::size_t{3}, std::size_t{4}}) {
+    for (const std::size_t first : {std::size_t{3}, std::size_t{6}, std::size_t{4}}) {
+      if (fewest < first + 3) continue;
       const bool are_bytes = is_byte[first] && is_byte[first + 1] && is_byte[first + 2];
       // Normals along an axis are whole numbers, too.
       const bool are_colors =
           are_bytes && std::max({greatest[first], greatest[first + 1], greatest[first + 2]}) > 1;
-      if (fewest < first + 3 || !are_colors) continue;
+      if (!are_colors) continue;
       for (std::size_t c = 0; c < 3; ++c) columns_.push_back(first + c);
       return;
     }
@@ -218,17 +220,18 @@ class XyzPoints : public VoxelSource {
   void find_color_range() {
     std::size_t points = 0;
     double greatest = 0;
-    bool has_fractions = false;
+    bool has_points = false;  // "0.0" is no whole number.
     for_each_line([&](std::string_view line, std::uint64_t number) {
       if (count_of(line)) return true;
       const std::array<double, kValues> values = values_of(line, number);
+      const std::vector<std::string_view> fields = fields_of(line);
       for (std::size_t c = kCoordinates; c < kValues; ++c) {
         greatest = std::max(greatest, values[c]);
-        has_fractions |= values[c] != std::floor(values[c]);
+        has_points |= fields[columns_[c]].find('.') != std::string_view::npos;
       }
       return ++points < kSampledPoints;
     });
-    color_range_ = greatest > 255 ? 65535 : greatest > 1 || !has_fractions ? 255 : 1;
+    color_range_ = greatest > 255 ? 65535 : greatest > 1 || !has_points ? 255 : 1;
   }
 
   /// Returns the number of points that a line of .pts files announces: its only number.

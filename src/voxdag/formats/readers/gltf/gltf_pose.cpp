@@ -104,9 +104,9 @@ void GltfPose::read_influences(const GltfPrimitive& primitive) {
     }
     for (std::size_t i = 0; i < found[0]->size(); ++i) {
       file_.source().work().poll_seldom(i);
-      const std::array<float, 4> joints = found[0]->floats<4>(i);
-      for (const float joint : joints)
-        if (!(joint >= 0 && joint < static_cast<float>(joints_.size())))
+      const std::array<float, 4> joints = found[0]->floats<4>(i), weights = found[1]->floats<4>(i);
+      for (std::size_t k = 0; k < 4; ++k)
+        if (weights[k] > 0 && !(joints[k] >= 0 && joints[k] < static_cast<float>(joints_.size())))
           throw primitive.value.error("a joint of vertex " + std::to_string(i) +
                                       " does not exist: the skin has " +
                                       std::to_string(joints_.size()));

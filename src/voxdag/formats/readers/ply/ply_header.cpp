@@ -92,7 +92,8 @@ class PlyHeaderParser {
   void parse_comment(std::string_view text) {
     std::int64_t number = 0;
     const std::string_view keyword = next_token(text);
-    if (keyword == "TextureFile") header_.textures.emplace_back(trim(text));
+    if (keyword == "TextureFile" || keyword == "texturefile")
+      header_.textures.emplace_back(trim(text));
     if (keyword != "material" || !parse_int(next_token(text), number)) return;
     if (number == static_cast<std::int64_t>(header_.materials.size()))
       header_.materials.emplace_back(trim(text));

@@ -276,7 +276,9 @@ bool is_exact_binary_stl(std::string_view bytes) {
 
 bool is_ascii_stl(std::string_view bytes) {
   StlTokens tokens(without_byte_order_mark(bytes).substr(0, 4096));
-  if (!same_word(tokens.next(), "solid")) return false;
+  const std::string_view first = tokens.next();
+  if (same_word(first, "facet")) return same_word(tokens.next(), "normal");
+  if (!same_word(first, "solid")) return false;
   tokens.skip_line();
   const std::string_view word = tokens.next();
   return same_word(word, "facet") || same_word(word, "endsolid");
@@ -287,8 +289,9 @@ MeshWithAppearance read_stl(const MeshSource& source, ReadParts parts) {
   const bool has_appearance = parts == ReadParts::kMeshAndAppearance;
   MeshWithAppearance read;
   const std::string_view head = without_byte_order_mark(source.bytes).substr(0, 512);
+  const std::string_view word = StlTokens(head).next();
   const bool starts_as_text =
-      same_word(StlTokens(head).next(), "solid") && head.find('\0') == head.npos;
+      (same_word(word, "solid") || same_word(word, "facet")) && head.find('\0') == head.npos;
   if (starts_as_text && !is_exact_binary_stl(source.bytes)) {
     const std::vector<std::string_view> texts = split_facets(source.bytes, kChunkBytes / 2);
     std::vector<std::size_t> irregular(texts.size());

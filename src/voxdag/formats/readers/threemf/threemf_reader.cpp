@@ -36,6 +36,7 @@ struct Object3mf {
   CountedVector<ObjectTriangle> triangles;
   std::vector<Reference3mf> components;
   bool has_gradients = false;  ///< A triangle has several materials.
+  bool is_support = false;     ///< Of a print, not of the body.
 };
 
 /// A range of materials.
@@ -135,6 +136,7 @@ class ModelHandler : public XmlHandler {
     if (!is_new) throw Error("object " + in_quotes(id.second) + " is there twice");
     archive_.count_entry(part_.size() + id.second.size());
     object_ = &object->second;
+    object_->is_support = attributes["type"] == "support" || attributes["type"] == "solidsupport";
     default_group_ = attributes["pid"];
     default_material_ =
         default_group_.empty() ? 0 : material_of(default_group_, attributes["pindex"]);
@@ -296,6 +298,7 @@ class ThreemfReader {
       throw source_.error("the build has more than " + std::to_string(kMaxXmlInstances) +
                           " objects");
     const Object3mf& object = found->second;
+    if (object.is_support) return;
     if (!object.triangles.empty()) {
       instances_.push_back({&object, reference.transform});
       vertices_ += object.vertices.size();
