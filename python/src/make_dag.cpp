@@ -206,9 +206,24 @@ std::vector<Rgb8> colors_of_rows(const std::optional<ArrayLike>& colors, std::si
   return result;
 }
 
+/// Imports a source. Adds a warning about points that are left out.
 DagPointer import_source(const VoxelSource& source, const ImportOptions& options,
-                         const std::string& name, Work work) {
-  return std::make_shared<Dag>(import_model(source, options, name, work).model);
+                         const std::string& name, Work work, std::vector<std::string>& warnings) {
+  ImportedModel imported = import_model(source, options, name, work);
+  if (imported.not_finite > 0)
+    warnings.push_back(std::to_string(imported.not_finite) +
+                       " points left out: a coordinate is not finite");
+  return std::make_shared<Dag>(std::move(imported.model));
+}
+
+/// Imports arrays as import_source(). Its warnings are Python's.
+DagPointer import_arrays(const ArraySource& source, const ImportOptions& options,
+                         const std::string& name) {
+  std::vector<std::string> warnings;
+  DagPointer dag =
+      run_work([&](Work work) { return import_source(source, options, name, work, warnings); });
+  for (const std::string& warning : warnings) warn(name + ": " + warning);
+  return dag;
 }
 
 ImportOptions import_options(const GridRequest& grid) {
@@ -244,7 +259,7 @@ DagPointer from_points(const ArrayLike& points, std::optional<std::int64_t> reso
   std::vector<Vec3d> places = rows_of<double>(points, "points");
   std::vector<Rgb8> values = colors_of_rows(colors, places.size());
   const ArraySource source(std::move(places), std::move(values), true);
-  return run_work([&](Work work) { return import_source(source, options, "points", work); });
+  return import_arrays(source, options, "points");
 }
 
 DagPointer from_coords(const ArrayLike& coords, std::optional<std::int64_t> resolution,
@@ -255,7 +270,7 @@ DagPointer from_coords(const ArrayLike& coords, std::optional<std::int64_t> reso
   for (const Vec3i v : voxels_of(coords, "coords")) places.push_back(Vec3d(v));
   std::vector<Rgb8> values = colors_of_rows(colors, places.size());
   const ArraySource source(std::move(places), std::move(values), false);
-  return run_work([&](Work work) { return import_source(source, options, "coords", work); });
+  return import_arrays(source, options, "coords");
 }
 
 DagPointer from_dense(const ArrayLike& given, std::optional<std::int64_t> resolution,
@@ -276,7 +291,7 @@ DagPointer from_dense(const ArrayLike& given, std::optional<std::int64_t> resolu
   const auto least = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(side)));
   const ImportOptions options = options_of_voxels(resolution.value_or(least), pitch, origin);
   const ArraySource source(std::move(places), {}, false);
-  return run_work([&](Work work) { return import_source(source, options, "dense", work); });
+  return import_arrays(source, options, "dense");
 }
 
 /// Reads a file of points, voxels or a volume, as `voxdag import` does. Its warnings are Python's.
@@ -299,7 +314,7 @@ DagPointer import_file(const std::filesystem::path& path, std::optional<std::int
           {.threshold = threshold, .use_placement = !pitch && !origin, .grid = grid, .work = work});
       warnings = source->warnings();
       check_grid_options(*source, options);
-      return import_source(*source, options, path.filename().string(), work);
+      return import_source(*source, options, path.filename().string(), work, warnings);
     });
   });
   for (const std::string& warning : warnings) warn(path.string() + ": " + warning);

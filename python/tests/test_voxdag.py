@@ -181,7 +181,11 @@ def test_imports_files(tmp_path):
     assert again == dag and again.info["has_colors"]
     assert not voxdag.import_file(tmp_path / "a.vox", colors=False).info["has_colors"]
     (tmp_path / "a.xyz").write_text("0 0 0\n1 0 nan\n2 0 0\n")
-    assert voxdag.import_file(tmp_path / "a.xyz", pitch=1).coords().tolist() == [[0, 0, 0], [2, 0, 0]]
+    with pytest.warns(UserWarning, match="a.xyz: 1 points left out"):
+        dag = voxdag.import_file(tmp_path / "a.xyz", pitch=1)
+    assert dag.coords().tolist() == [[0, 0, 0], [2, 0, 0]]
+    with pytest.warns(UserWarning, match="points: 1 points left out"):
+        assert len(voxdag.from_points([[0, 0, 0], [1, 0, np.nan]], pitch=1)) == 1
     with pytest.raises(OSError, match="a.xyz: holds points, which need"):
         voxdag.import_file(tmp_path / "a.xyz")
     np.save(tmp_path / "v.npy", np.arange(8).reshape(2, 2, 2))

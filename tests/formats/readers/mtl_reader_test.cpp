@@ -136,6 +136,17 @@ TEST_F(ReadMtl, OptionsMayFollowTheName) {
   EXPECT_EQ(result.appearance.images[1].path, directory_.path() / "my -bm map.png");
 }
 
+TEST_F(ReadMtl, EmissionIsReadAndItsTextureAloneCountsInFull) {
+  write("a.mtl", "newmtl m\nKe 1 0 0\nnewmtl n\nKe 0 0 0\nmap_Ke a.png\n");
+  const auto result =
+      read("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl m\nf 1 2 3\nusemtl n\nf 1 2 3\n");
+  const std::vector<Material>& materials = result.appearance.materials;
+  EXPECT_EQ(materials[0].emission, (Vec3f{1, 0, 0}));
+  EXPECT_FALSE(materials[0].emission_map.exists());
+  EXPECT_EQ(materials[1].emission, (Vec3f{1, 1, 1}));
+  EXPECT_EQ(materials[1].emission_map.image, 0);
+}
+
 TEST_F(ReadMtl, OneNumberOfKdIsForAllChannels) {
   write("a.mtl", "newmtl m\nKd 1 # white\nnewmtl n\nKd 0\n");
   const auto result = read("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl n\nf 1 2 3\n");

@@ -75,6 +75,9 @@ class MtlReader::Impl {
       material.alpha = 1;
       warnings_.add(hiding_ + ": it would hide the material: the material is opaque");
     }
+    // A texture of emission without a colour counts in full.
+    if (material.emission_map.exists() && material.emission == Vec3f{})
+      material.emission = {1, 1, 1};
     material.alpha_mode = material.alpha_map.exists()   ? AlphaMode::kMask
                           : material.alpha < 1          ? AlphaMode::kBlend
                           : material.color_map.exists() ? AlphaMode::kMask
@@ -107,7 +110,14 @@ class MtlReader::Impl {
     Material& material = *material_;
     if (keyword == "kd") {
       material.base_color = kDefaultColor;
-      attempt("the material's colour is grey", [&] { set_color(line); });
+      attempt("the material's colour is grey", [&] { set_color(line, material.base_color); });
+    } else if (keyword == "ke") {
+      material.emission = {};
+      attempt("the material emits nothing", [&] { set_color(line, material.emission); });
+    } else if (keyword == "map_ke") {
+      material.emission_map = {};
+      attempt("the material's emission has no texture",
+              [&] { material.emission_map = use(parse_mtl_map(line)); });
     } else if (keyword == "d" || (keyword == "tr" && !has_dissolve_)) {
       has_dissolve_ = keyword == "d";
       material.alpha = 1;
@@ -139,7 +149,7 @@ class MtlReader::Impl {
     }
   }
 
-  void set_color(std::string_view line) {
+  void set_color(std::string_view line, Vec3f& color) {
     std::string_view rest = line;
     if (const std::string kind = to_lower(next_token(rest)); kind == "spectral" || kind == "xyz")
       throw MalformedMtl("spectral curves and CIEXYZ are not supported");
@@ -150,7 +160,7 @@ class MtlReader::Impl {
     if (is_grey) kd[1] = kd[2] = kd[0];
     if ((count != 3 && !is_grey) || !all_finite(kd)) throw MalformedMtl(kColorNumbers);
     for (std::size_t c = 0; c < 3; ++c)
-      material_->base_color[static_cast<int>(c)] = srgb_to_linear(std::clamp(kd[c], 0.0f, 1.0f));
+      color[static_cast<int>(c)] = srgb_to_linear(std::clamp(kd[c], 0.0f, 1.0f));
     if (std::any_of(kd.begin(), kd.end(), is_outside)) warn(kClamped);
   }
 
