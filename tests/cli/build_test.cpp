@@ -69,6 +69,17 @@ TEST_F(Build, AMeshFarFromZeroIsBuiltAndVerifiedAsPreciselyAsOneNearIt) {
   EXPECT_NEAR(around.at("transform").at("origin").at(0), 500000.1125, 1e-8);
 }
 
+TEST_F(Build, AMeshWithFarPartsIsAWarningIfItsVoxelsAreSmall) {
+  write_text(mesh_, std::string(kMesh) + "v 3000000 0 0\nv 3000001 0 0\nv 3000000 1 0\nf 5 6 7\n");
+  EXPECT_EQ(build({"-r", "64", "-q"}).err, "");
+  const ProcessResult result = build({"--bounds", "0,0,0,8,8,8", "-r", "64", "-q"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err,
+            "voxdag: warning: " + mesh_ +
+                ": vertices, in float32, may be off by 0.18, and a voxel has 0.12: parts "
+                "of the mesh are far from each other or from 0\n");
+}
+
 TEST_F(Build, ATriangleThatIsLeftOutIsAWarning) {
   write_text(mesh_, std::string(kMesh) + "v nan 0 0\nf 1 2 5\n");
   const ProcessResult result = build({"-r", "64", "-q"});

@@ -104,6 +104,7 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
 
   DagReport report;
   report.metadata.grid = grid_for(mesh, arguments.grid);
+  warn_of_rounding(session.subject, mesh, report.metadata.grid, session);
   arguments.attributes.check_levels(report.metadata.grid.levels);
   report.metadata.source = {names_of(arguments.meshes), mesh.vertices.size(),
                             mesh.triangles.size()};

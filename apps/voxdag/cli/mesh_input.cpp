@@ -1,5 +1,9 @@
 #include "cli/mesh_input.hpp"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
@@ -7,6 +11,7 @@
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/mesh/join_meshes.hpp"
+#include "voxdag/mesh/mesh_bounds.hpp"
 #include "voxdag/mesh_view/mesh_in_grid.hpp"
 
 namespace voxdag::cli {
@@ -84,6 +89,21 @@ JoinedMeshes read_mesh_files(const std::vector<std::string>& files, bool with_ap
       with_file_name(files[i], [&] { append_mesh(joined.source, std::move(read), access.memory); });
   }
   return joined;
+}
+
+void warn_of_rounding(const std::string& file, const Mesh& mesh, const Grid& grid,
+                      Session& session) {
+  const Box3d bounds = referenced_bounds(mesh);
+  double farthest = 0;
+  for (const Vec3d corner : {bounds.lo - mesh.origin, bounds.hi - mesh.origin})
+    for (int axis = 0; axis < 3; ++axis) farthest = std::max(farthest, std::abs(corner[axis]));
+  const double rounding = farthest * 0x1p-24;
+  if (rounding <= grid.voxel_size / 8) return;
+  print_warnings(
+      {fmt::format("{}: vertices, in float32, may be off by {:.2g}, and a voxel has {:.2g}: "
+                   "parts of the mesh are far from each other or from 0",
+                   file, rounding, grid.voxel_size)},
+      session);
 }
 
 void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet& scene,

@@ -55,6 +55,11 @@ struct JoinedMeshes {
 JoinedMeshes read_mesh_files(const std::vector<std::string>& files, bool with_appearance,
                              const MeshAccess& access, Session& session);
 
+/// Warns if the vertices, which are float32 from Mesh::origin, may be off by more than an eighth of
+/// a voxel: the mesh has parts that are far from each other, and small voxels.
+void warn_of_rounding(const std::string& file, const Mesh& mesh, const Grid& grid,
+                      Session& session);
+
 /// Throws Error(file, ...) unless the voxels were built from this mesh, which was read from `file`.
 void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet& scene,
                       const Grid& grid);
