@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 
 # say STEP: prints what comes next, and the time since the start.
 say() { printf '== %d:%02d  %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$1"; }
-echo "This builds voxdag and renders demo.png: some 6 minutes on two cores; installing packages takes 2 to 5 more."
+echo "This builds voxdag and renders demo.png: some 5 minutes on two cores; installing packages takes 2 to 5 more."
 
 say "Debian's packages"
 install_packages "${voxdag_packages[@]}"
