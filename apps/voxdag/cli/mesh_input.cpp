@@ -60,8 +60,8 @@ void add_mesh_access_options(const Command& command, MeshAccess& access, const O
       "Let the mesh name textures, buffers and material libraries outside its own folder");
   const Option assimp = command.parsed(
       "--assimp", access.any_importer, parse_importers, "safe|any",
-      "Formats that assimp may read. safe: those whose importers survived fuzzing; any: all "
-      "(default: safe)");
+      "Where assimp reads FBX and others. safe: in a child process that can only compute; any: in "
+      "this process, with the files that the mesh names (default: safe)");
   if (mesh == nullptr) return;
   for (const Option& option : {format, outside, assimp}) option.needs(*mesh);
 }

@@ -34,6 +34,7 @@ void* MappedArrays::allocate(std::size_t bytes) {
   if (code != 0) throw file_error(folder_, bytes, code);
   void* const memory = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
   if (memory == MAP_FAILED) throw file_error(folder_, bytes, errno);
+  ::madvise(memory, bytes, MADV_DONTFORK);  // A ConfinedChild must not write to it.
   try {
     const std::lock_guard lock(mutex_);
     arrays_.emplace(memory, bytes);

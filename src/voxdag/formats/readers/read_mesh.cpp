@@ -10,7 +10,6 @@
 #include "voxdag/formats/readers/gltf/gltf_reader.hpp"
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 #include "voxdag/formats/readers/off/off_reader.hpp"
-#include "voxdag/formats/readers/plain_colors.hpp"
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 #include "voxdag/formats/readers/stl/stl_reader.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
@@ -42,9 +41,7 @@ MeshWithAppearance read_format(const MeshSource& source, const std::string& exte
     case MeshFormat::kOther:
       break;
   }
-  MeshWithAppearance read{read_with_assimp(source, extension), {}, {}};
-  if (parts == ReadParts::kMeshAndAppearance) add_plain_materials(source, read);
-  return read;
+  return read_with_assimp(source, extension, parts);
 }
 
 MeshWithAppearance read(const std::filesystem::path& path, const ReadOptions& options,

@@ -17,7 +17,8 @@ struct ReadOptions {
   MappedArrays* arrays = nullptr;
   /// Whether a mesh file may name files outside its own folder. If false, such a name is an error.
   bool allow_outside = false;
-  /// Whether assimp may use all its importers. If false, it uses only those that survive fuzzing.
+  /// Whether assimp runs in this process, where its defects are the caller's and it can open other
+  /// files. If false, it runs in a confined child.
   bool any_assimp_importer = false;
   /// Whether to read the objects of the mesh: `o` and `g` of OBJ, nodes of glTF.
   bool objects = false;
