@@ -6,34 +6,10 @@
 
 #include "voxdag/algebra/align_grids.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/formats/imports/derived_source.hpp"
 
 namespace voxdag {
 namespace {
-
-/// A source that passes on what another says.
-class DerivedSource : public VoxelSource {
- public:
-  explicit DerivedSource(std::unique_ptr<VoxelSource> source) : source_(std::move(source)) {}
-
-  bool has_points() const override { return source_->has_points(); }
-  bool has_colors() const override { return source_->has_colors(); }
-  bool has_palette() const override { return source_->has_palette(); }
-  std::vector<std::string> warnings() const override { return source_->warnings(); }
-
- protected:
-  /// Calls visit() with all places as place_of() returns them.
-  template <class PlaceOf>
-  void visit_moved(const VisitBatch& visit, const PlaceOf& place_of) const {
-    std::vector<Vec3d> places;
-    source_->visit_all([&](const VoxelBatch& batch) {
-      places.clear();
-      for (const Vec3d place : batch.places) places.push_back(place_of(place));
-      visit({places, batch.colors});
-    });
-  }
-
-  std::unique_ptr<VoxelSource> source_;
-};
 
 class MovedPoints final : public DerivedSource {
  public:
@@ -47,6 +23,7 @@ class MovedPoints final : public DerivedSource {
     // The transform rounds once more.
     return {2 * error.relative, {most, most, most}};
   }
+  std::optional<Grid> grid() const override { return std::nullopt; }
   void visit_all(const VisitBatch& visit) const override {
     visit_moved(visit, [this](Vec3d point) { return transform_.point(point); });
   }
@@ -85,9 +62,8 @@ class TurnedVoxels final : public DerivedSource {
       if (is_flipped_[axis]) grid_->origin[axis] -= sides_[axis] * grid_->voxel_size;
   }
 
-  bool has_place() const override { return source_->has_place(); }
-  std::optional<char> up() const override { return source_->up(); }
   std::optional<Grid> grid() const override { return grid_; }
+  Vec3l first_voxel() const override { return {}; }
   void visit_all(const VisitBatch& visit) const override {
     visit_moved(visit, [this](Vec3d voxel) {
       Vec3d turned;
