@@ -140,9 +140,11 @@ class NrrdHeaderParser {
     if (colon == std::string_view::npos) fail(number, "has no colon");
     if (line.substr(colon).starts_with(":=")) return;
     std::string name = lower(trimmed(line.substr(0, colon)));
-    if (name == "datafile") name = "data file";
-    if (name == "lineskip") name = "line skip";
-    if (name == "byteskip") name = "byte skip";
+    constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
+        {"datafile", "data file"}, {"lineskip", "line skip"}, {"byteskip", "byte skip"},
+        {"axismins", "axis mins"}, {"axismaxs", "axis maxs"}, {"centerings", "centers"}};
+    for (const auto& [other, usual] : kOtherNames)
+      if (name == other) name = usual;
     const std::string value(trimmed(line.substr(colon + 1)));
     const auto [field, is_new] = fields_.try_emplace(name, Field{value, number});
     if (!is_new && field->second.value != value)
@@ -284,7 +286,33 @@ class NrrdHeaderParser {
     if (const Field* origin = find("space origin")) {
       placement.first_centre = vector_in(*origin, origin->value);
       placement.is_known = true;
+    } else if (const Field* mins = find("axis mins");
+               mins != nullptr && !find("space directions")) {
+      parse_axis_mins(*mins);
     }
+  }
+
+  /// Reads where the axes begin: at the centre of the first voxel, or, as usual, at its border.
+  /// "axis maxs" gives the spacing of the axes if nothing else does.
+  void parse_axis_mins(const Field& mins) {
+    VolumePlacement& placement = header_.placement;
+    const Field *const maxs = find("axis maxs"), *const centers = find("centers");
+    Vec3d first;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int axis = static_cast<int>(i);
+      const auto word = [&](const Field& field) { return words_of_axes(field)[first_axis() + i]; };
+      const bool is_node = centers != nullptr && lower(word(*centers)) == "node";
+      double& step = placement.steps[i][axis];
+      const auto min = number_in<double>(mins, word(mins));
+      if (maxs != nullptr && find("spacings") == nullptr) {
+        const auto voxels = static_cast<double>(header_.volume.size[i]) - (is_node ? 1 : 0);
+        const double spacing = (number_in<double>(*maxs, word(*maxs)) - min) / voxels;
+        if (spacing > 0 && std::isfinite(spacing)) step = spacing;
+      }
+      placement.is_known |= !std::isnan(min);
+      first[axis] = (std::isnan(min) ? 0 : min) + (is_node && !std::isnan(min) ? 0 : step / 2);
+    }
+    if (placement.is_known) placement.first_centre = first;
   }
 
   /// Returns the number of the volume's x axis.
