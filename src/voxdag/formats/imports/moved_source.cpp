@@ -48,8 +48,8 @@ class TurnedVoxels final : public DerivedSource {
     if (!grid_) {
       if (transform.factor() != 1 || transform.point({}) != Vec3d{})
         throw Error("", "",
-                    "does not say where its voxels lie: --voxel-size and --origin do that, not "
-                    "--unit, --scale and --translate");
+                    "does not say where its voxels lie, so --unit, --scale and --translate cannot "
+                    "move them: --voxel-size and --origin place them");
       find_sides();
       return;
     }
@@ -97,7 +97,7 @@ class JoinedSource final : public VoxelSource {
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       const VoxelSource& source = *sources_[i];
       if (source.has_points() != has_points())
-        throw Error("", "", "holds points, but another input voxels, or the other way round");
+        throw Error("", "", "is joined with others: all of them must hold points, or all voxels");
       has_colors_ |= source.has_colors();
       if (!has_points()) add_grid(i);
     }
@@ -147,8 +147,7 @@ class JoinedSource final : public VoxelSource {
     const std::optional<Grid> grid = sources_[i]->grid();
     if (i > 0 && grid.has_value() != grid_.has_value())
       throw Error("", "",
-                  "says where its voxels lie, but another input does not, or the other way "
-                  "round");
+                  "is joined with others: all of them must say where their voxels lie, or none");
     if (!grid || i == 0) {
       grid_ = grid;
       return;
