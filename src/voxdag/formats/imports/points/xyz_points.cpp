@@ -65,7 +65,7 @@ std::vector<std::string_view> fields_of(std::string_view line) {
 
 /// Returns whether Windows wrote a number that is not finite: "1.#QNAN", "-1.#IND", "1.#INF00".
 bool is_windows_nan(std::string_view field) {
-  const std::size_t sign = field.find('#');
+  const std::size_t sign = field.rfind('#');
   return sign != field.npos && sign > 1 && field[sign - 1] == '.' && field[sign - 2] == '1';
 }
 
