@@ -180,9 +180,7 @@ TEST_F(Import, ColoursWithoutNamesAreAGuess) {
   std::string text = "1 2 3 255 128 0\n";
   const auto guessed = open(text);
   EXPECT_TRUE(guessed->has_colors());
-  EXPECT_EQ(guessed->warnings(),
-            std::vector<std::string>{
-                "its columns 4 to 6 have no names and are taken for red, green and blue"});
+  EXPECT_TRUE(guessed->warnings().empty());
   // A later line, behind those that the reader looks at first, is no colour.
   for (int i = 1; i < 5'000; ++i) text += "1 2 3 255 128 0\n";
   for (const char* last : {"1 2 3 255 256 0\n", "1 2 3 255 128 0.5\n", "1 2 3\n"}) {

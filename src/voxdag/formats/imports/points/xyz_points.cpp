@@ -259,7 +259,6 @@ class XyzPoints : public VoxelSource {
         return;
       }
       for (std::size_t c = 0; c < 3; ++c) columns_.push_back(first + c);
-      warnings_.push_back(columns + " have no names and are taken for red, green and blue");
       return;
     }
     if (fewest >= kValues)
