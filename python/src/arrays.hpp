@@ -12,7 +12,8 @@
 
 namespace voxdag::python {
 
-/// An argument that NumPy makes an array of: an array of any type, or lists of lists.
+/// An argument that NumPy makes an array of: an array of any type, or lists of lists. Raises
+/// TypeError if values are masked.
 class ArrayLike : public pybind11::array {
  public:
   ArrayLike() = default;
@@ -81,6 +82,9 @@ struct type_caster<voxdag::python::ArrayLike> {
   PYBIND11_TYPE_CASTER(voxdag::python::ArrayLike, const_name("ArrayLike"));
 
   bool load(handle source, bool) {
+    // array::ensure() drops masks.
+    if (module_::import("numpy.ma").attr("is_masked")(source).cast<bool>())
+      throw type_error("an array has masked values: replace them first, as array.filled(0) does");
     array made = array::ensure(source);
     if (!made) return false;
     value = voxdag::python::ArrayLike(std::move(made));

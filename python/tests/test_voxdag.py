@@ -119,10 +119,16 @@ def test_values_that_do_not_fit_are_refused(call, reason):
     (lambda: voxdag.build(CUBE.astype(complex), CUBE_FACES, resolution=8), "vertices has the type"),
     (lambda: voxdag.from_coords([[1, 2, 3]]).nearest([[None, 1, 2]]), "points has the type object"),
     (lambda: voxdag.from_coords([[1, 2, 3]]).cast([[0, 0, 0]], [["x", "y", "z"]]), "directions has the type"),
+    (lambda: voxdag.from_dense(np.ma.masked_equal(np.ones((2, 2, 2), int), 1)), "masked values"),
+    (lambda: voxdag.from_points(np.ma.masked_greater([[1, 2, 3.0]], 2), pitch=1), "masked values"),
 ])
 def test_types_that_do_not_fit_are_type_errors(call, reason):
     with pytest.raises(TypeError, match=reason):
         call()
+
+
+def test_masked_arrays_without_masked_values_are_arrays():
+    assert len(voxdag.from_dense(np.ma.masked_equal(np.ones((2, 2, 2), int), 7))) == 8
 
 
 def test_coords_and_dense_arrays_have_a_place():

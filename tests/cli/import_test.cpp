@@ -69,6 +69,23 @@ TEST_F(ImportCommand, PointsNeedAGrid) {
   refused({path("p.xyz"), "-r", "16", "--origin", "1,2,3", "--bounds", "0,0,0,1,1,1"}, 1,
           "--origin goes with -r or --voxel-size");
   refused({path("b.binvox")}, 1, "ends after 0 of 64 values");
+  std::filesystem::create_directory(path("slices"));
+  write_text(path("slices/1.png"), "no picture");
+  refused({path("slices")}, 1, "voxdag: " + path("slices/1.png") + ": ");
+}
+
+TEST_F(ImportCommand, AnImportWithoutVoxelsIsAWarning) {
+  write_text(path("p.xyz"), "5 5 5\n");
+  const ProcessResult outside = run_voxdag(
+      {"import", path("p.xyz"), "-r", "4", "--bounds", "0,0,0,1,1,1", "-o", path("p.vdag")});
+  ASSERT_EQ(outside.status, 0) << outside.err;
+  EXPECT_NE(outside.err.find("no voxels: all points lie outside of the grid"), std::string::npos)
+      << outside.err;
+  write_text(path("v.nrrd"),
+             "NRRD0004\ntype: int\ndimension: 3\nsizes: 1 1 1\nencoding: ascii\n\n0\n");
+  const ProcessResult none = run_voxdag({"import", path("v.nrrd"), "-o", path("p.vdag")});
+  ASSERT_EQ(none.status, 0) << none.err;
+  EXPECT_NE(none.err.find("no voxels: v.nrrd sets none"), std::string::npos) << none.err;
 }
 
 TEST_F(ImportCommand, ColoredPointsComeBackAsTheyWere) {

@@ -77,6 +77,11 @@ TEST(InputFile, PointsAndVolumesMayBeCompressed) {
     options.folder = dir.path();
     EXPECT_EQ(import_voxels(*open_voxel_source(dir / name), options).read, 2u) << name;
   }
+  // The format may be named with the compression, as in names of files.
+  std::filesystem::copy_file(dir / "a.xyz.gz", dir / "plain");
+  for (const char* format : {"xyz", "xyz.gz", "XYZ.GZ"})
+    EXPECT_TRUE(
+        open_voxel_source(dir / "plain", {.threshold = {}, .format = format})->has_points());
   write_text(dir / "bad.xyz.gz", gzip("0 0 0\n1 0\n"));
   const std::string error = error_of([&] {
     ImportOptions options;

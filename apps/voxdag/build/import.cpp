@@ -94,7 +94,9 @@ void import(const ImportArguments& arguments, Session& session) {
   model.save(arguments.output, arguments.compact, work);
   const SvdagCounts& counts = model.metadata().counts;
   session.bar.clear();
-  warn_if_empty(counts.voxels, arguments.output, session);
+  warn_if_empty(counts.voxels, arguments.output, session,
+                result.outside > 0 ? "all points lie outside of the grid"
+                                   : names_of(arguments.files) + " sets none");
   if (session.json) {
     const nlohmann::ordered_json json = {{"read", result.read},
                                          {"outside", result.outside},
@@ -139,8 +141,7 @@ void add_import_command(const Command& program, Session& session) {
           "3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. "
           "Voxels: .vox, .binvox, or .npy of N x 3 integers. Volumes: .npy of X x Y x Z, .nrrd, "
           ".nhdr, .nii, .vdb, or a folder of .png slices. Each of them may also be compressed "
-          "(.gz, "
-          ".zst). -: standard input")
+          "(.gz, .zst). -: standard input")
       .required();
   command.text("-o,--output", arguments->output, "OUT", "The .vdag file to write").required();
   command.text("--format", arguments->format, "EXT",

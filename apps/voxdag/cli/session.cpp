@@ -56,10 +56,9 @@ void announce_cost(const std::string& work, double seconds, Session& session) {
   print_line(fmt::format("{} takes about {}", work, human_duration(seconds)));
 }
 
-void warn_if_empty(std::uint64_t voxels, const std::string& output, Session& session) {
-  if (voxels == 0)
-    print_warnings({output + ": no voxels: no visible part of the mesh's surface lies in the grid"},
-                   session);
+void warn_if_empty(std::uint64_t voxels, const std::string& output, Session& session,
+                   const std::string& reason) {
+  if (voxels == 0) print_warnings({output + ": no voxels: " + reason}, session);
 }
 
 std::string json_text(const nlohmann::ordered_json& json) {

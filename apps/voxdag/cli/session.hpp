@@ -50,8 +50,10 @@ void print_warnings(const std::vector<std::string>& warnings, Session& session);
 /// Prints "voxdag: WORK takes about DURATION" on stderr if that is more than a minute.
 void announce_cost(const std::string& work, double seconds, Session& session);
 
-/// Warns if the build put no voxels into `output`.
-void warn_if_empty(std::uint64_t voxels, const std::string& output, Session& session);
+/// Warns if there are no voxels in `output`, and says why.
+void warn_if_empty(
+    std::uint64_t voxels, const std::string& output, Session& session,
+    const std::string& reason = "no visible part of the mesh's surface lies in the grid");
 
 /// Returns indented JSON that ends with a line break. Bytes that are not UTF-8, which file names
 /// may have, become U+FFFD.

@@ -177,28 +177,23 @@ void add_export_command(const Command& program, Session& session) {
       "  voxdag export scene.vdag -o scene.html\n"
       "  voxdag export scene.vdag -o site/\n\n"
       "An ESVO exports its voxels of the finest level. The outputs have the colours of the file, "
-      "or "
-      "of --look, as far as their formats can. Formats that cannot hold a place in the world come "
-      "with OUT.json, which has it.\n\n"
+      "or of --look, as far as their formats can. Formats that cannot hold a place in the world "
+      "come with OUT.json, which has it.\n\n"
       "A page shows the whole DAG with its colours and normals; --levels, --color-bound, "
       "--normal-bound and --drop-attributes make it smaller. The command prints its size, and "
-      "warns "
-      "if an .html file has more than 64 MiB: a browser reads such a file completely, but reads "
-      "only "
-      "the levels that it shows from a folder.\n\n"
+      "warns if an .html file has more than 64 MiB: a browser reads such a file completely, but "
+      "reads only the levels that it shows from a folder.\n\n"
       "A folder that exists is replaced as a whole, and only if it has no files but those of an "
-      "older "
-      "page. It stays if the export fails. `kill -9`, or a second Ctrl-C, can leave the unfinished "
-      "folder OUT.voxdag-PID-N.");
+      "older page. It stays if the export fails. `kill -9`, or a second Ctrl-C, can leave the "
+      "unfinished folder OUT.voxdag-PID-N.");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   command
       .text("-o,--output", arguments->output, "OUT",
             "Outer faces: .glb, .obj, .stl, or .ply with --faces. Points: .ply. Voxels: .vox "
             "(MagicaVoxel), .vdb, .nvdb, .binvox, .schem (Minecraft), .voxel.json (PlayCanvas). "
-            "Arrays: .npy "
-            "(coordinates, or dense with --window), .raw (dense), .spc.npy (kaolin). With "
-            "--slices: a folder. Pages that show a DAG: .html (one "
-            "file, also offline) or FOLDER/ (with the scene, for any web server)")
+            "Arrays: .npy (coordinates, or dense with --window), .raw (dense), .spc.npy (kaolin). "
+            "With --slices: a folder. Pages that show a DAG: .html (one file, also offline) or "
+            "FOLDER/ (with the scene, for any web server)")
       .required();
   command.text("--format", arguments->content.format, "EXT",
                "Write OUT as if its name ended in .EXT: for standard output (-o -)");

@@ -7,10 +7,10 @@
 
 namespace voxdag {
 
-/// Calls work() and returns its result. An Error that it throws gets the name of the file;
-/// Cancelled and OverMemory pass unchanged.
+/// Calls work() and returns its result. An Error that it throws gets the name of the file if it
+/// names none, or the file `replaced`; Cancelled and OverMemory pass unchanged.
 template <class Work>
-auto with_file_name(const std::string& file, const Work& work) {
+auto with_file_name(const std::string& file, const Work& work, const std::string& replaced = {}) {
   try {
     return work();
   } catch (const Cancelled&) {
@@ -18,6 +18,7 @@ auto with_file_name(const std::string& file, const Work& work) {
   } catch (const OverMemory&) {
     throw;
   } catch (const Error& error) {
+    if (!error.file().empty() && error.file() != replaced) throw;
     throw error.in_file(file);
   }
 }

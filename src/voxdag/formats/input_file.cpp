@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <map>
 #include <memory>
@@ -138,6 +139,13 @@ void unpack_zstd(const fs::path& given, std::string_view bytes, MemoryFile& to) 
 
 }  // namespace
 
+fs::path unpacked_name(const fs::path& name) {
+  std::string ending = name.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".gz" || ending == ".zst" ? fs::path(name).replace_extension() : name;
+}
+
 InputFile::InputFile(const fs::path& given, Work work) : path_(given), name_(given) {
   const int descriptor = given == "-" ? STDIN_FILENO : resolve_output(given).descriptor;
   if (descriptor >= 0) path_ = path_of_descriptor(given, descriptor, work);
@@ -156,8 +164,7 @@ InputFile::InputFile(const fs::path& given, Work work) : path_(given), name_(giv
   const std::string_view magic(head.data(), head.size());
   const bool is_gzip = magic.starts_with(kGzip);
   if (!is_gzip && magic != kZstd) return;
-  const std::string ending = given.extension().string();
-  if (ending == ".gz" || ending == ".zst") name_ = fs::path(given).replace_extension();
+  name_ = unpacked_name(given);
   const MappedFile packed(input, given, MappedFile::Access::kSequential);
   MemoryFile memory(given, work);
   is_gzip ? unpack_gzip(given, packed.text(), memory) : unpack_zstd(given, packed.text(), memory);

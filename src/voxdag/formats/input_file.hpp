@@ -8,6 +8,9 @@
 
 namespace voxdag {
 
+/// Returns the name without ".gz" or ".zst" at its end, in any case of letters.
+std::filesystem::path unpacked_name(const std::filesystem::path& name);
+
 /// A file that a user names. Its bytes can be opened at path() any number of times while this
 /// object lives. Move-only.
 ///
@@ -23,7 +26,7 @@ class InputFile {
 
   /// Returns the path that opens the bytes. Errors should name the file as it was given.
   const std::filesystem::path& path() const { return path_; }
-  /// Returns the given name without ".gz" or ".zst": its ending tells the format.
+  /// Returns the given name; of a compressed file its unpacked_name(). Its ending tells the format.
   const std::filesystem::path& name() const { return name_; }
   /// Returns whether path() differs from the given path.
   bool is_in_memory() const { return is_in_memory_; }

@@ -15,6 +15,8 @@
 #include "voxdag/core/vec2.hpp"
 #include "voxdag/formats/exports/faces/manifold_faces.hpp"
 #include "voxdag/formats/exports/faces/rectangles.hpp"
+#include "voxdag/formats/readers/mesh_chunks.hpp"
+#include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/image/decode.hpp"
 
 namespace voxdag {
@@ -277,6 +279,16 @@ TEST(ExportStl, AFarGridHasALocalOriginAndTheOffsetIsSaid) {
   for (std::size_t i = 0; i < near.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
       EXPECT_EQ(far[i][c] + Vec3f(0.75f, 0.25f, 1.5f), near[i][c]);
+  // The reader adds the offset.
+  EXPECT_EQ(read_mesh(dir / "near.stl").origin, (Vec3d{}));
+  EXPECT_EQ(read_mesh(dir / "far.stl").origin, (Vec3d{1000000.75, 0.25, 1.5}));
+  EXPECT_EQ(open_mesh_chunks(dir / "far.stl", {}, 1 << 20), nullptr);
+  EXPECT_NE(open_mesh_chunks(dir / "near.stl", {}, 1 << 20), nullptr);
+  // Another export of this name needs no offset.
+  std::filesystem::rename(dir / "far.stl.json", dir / "near.stl.json");
+  scene.grid.origin.x = 0;
+  export_stl(dir / "near.stl", scene.view(), scene.grid, options);
+  EXPECT_FALSE(std::filesystem::exists(dir / "near.stl.json"));
   // Voxels that are too small for floats are refused.
   scene.grid.voxel_size = 1e-300;
   EXPECT_NE(error_of([&] {

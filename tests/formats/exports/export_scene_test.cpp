@@ -98,6 +98,15 @@ TEST(ExportScene, NormalsAndWorldAreTurned) {
     return points;
   };
   auto expected = points_of("a.ply");
+  // The import turns the points back to their places.
+  EXPECT_EQ(points_of("b.ply"), expected);
+  EXPECT_EQ(open_voxel_source(dir / "b.ply")->up(), 'z');
+  EXPECT_EQ(open_voxel_source(dir / "b.ply")->grid()->origin, scene.grid.origin);
+  EXPECT_EQ(open_voxel_source(dir / "a.ply")->up(), std::nullopt);
+  // Other programs see the turned ones.
+  std::string bytes = read_text(dir / "b.ply");
+  bytes.replace(bytes.find("made by voxdag"), 14, "made by others");
+  write_text(dir / "b.ply", bytes);
   for (auto& [p, color] : expected) p = {p.x, p.z, -p.y};
   auto found = points_of("b.ply");
   ASSERT_EQ(found.size(), expected.size());

@@ -92,10 +92,20 @@ TEST(ExportVox, LargeGridsAreCutIntoSectionsThatMagicaVoxelShows) {
   const ExportedScene scene(12, 50);
   const auto files = export_vox(dir / "v.vox", scene.view(), scene.grid);
   EXPECT_GT(files.size(), 1u);
-  EXPECT_EQ(dir.count(), static_cast<int>(files.size()) + 1);
+  EXPECT_EQ(dir.count(), 2 * static_cast<int>(files.size()) + 1);  // Each has its placement.
   std::size_t voxels = 0;
+  std::set<VoxelKey> places;
   for (const auto& file : files) {
     voxels += read_back(file).size();
+    const auto placed = open_voxel_source(file);
+    EXPECT_EQ(placed->grid()->origin, scene.grid.origin);
+    EXPECT_EQ(placed->grid()->levels, 12);
+    placed->visit_all([&](const VoxelBatch& batch) {
+      for (const Vec3d p : batch.places) {
+        const Vec3i v(p);
+        places.insert({v.x, v.y, v.z});
+      }
+    });
     for (const auto& [first, size] : models(read_text(file)))
       for (int axis = 0; axis < 3; ++axis) {
         EXPECT_GE(first[axis], -1000);
@@ -103,6 +113,7 @@ TEST(ExportVox, LargeGridsAreCutIntoSectionsThatMagicaVoxelShows) {
       }
   }
   EXPECT_EQ(voxels, scene.set.size());
+  EXPECT_EQ(places, scene.set);
   EXPECT_TRUE(std::filesystem::exists(dir / "v.vox.json"));
 }
 

@@ -45,6 +45,24 @@ TEST(Export, TheExtensionChooses) {
           ".obj, .stl, .vox, .binvox, .schem, .voxel.json, .vdb or .nvdb");
 }
 
+TEST(Export, ThePlacementOfAnEarlierExportGoes) {
+  const TempDir dir;
+  const ExportedScene scene(3, 20);
+  const auto run = [&](const char* format) {
+    ExportContent content;
+    content.format = format;
+    export_voxels(dir / "a", scene.view(), scene.grid, content);
+    return std::filesystem::exists(dir / "a.json");
+  };
+  for (const char* format : {"binvox", "ply", "stl", "obj"}) {
+    EXPECT_TRUE(run("npy")) << format;
+    EXPECT_FALSE(run(format)) << format;
+  }
+  // Files of other programs stay.
+  write_text(dir / "a.json", "{\"grid\": 1}");
+  EXPECT_TRUE(run("ply"));
+}
+
 TEST(Export, AnEmptyDagMakesEmptyFiles) {
   const TempDir dir;
   const ExportedScene scene(4, 0);

@@ -168,6 +168,44 @@ TEST_F(Import, TextsTellTheRangeOfTheirColors) {
   EXPECT_EQ(color_of("x,y,z,r,g,b\n0,0,0,65535,0,257\n"), (Rgb8{255, 0, 1}));
   EXPECT_EQ(color_of("1 2 3 255 128 0\n"), (Rgb8{255, 128, 0}));
   EXPECT_EQ(color_of("1 2 3 0 0 1 255 128 0\n"), (Rgb8{255, 128, 0}));  // behind a normal
+  EXPECT_EQ(color_of("//X Y Z R8 G8 B8\n1 2 3 1 0 1\n1 2 3 9 9 9\n"), (Rgb8{1, 0, 1}));
+  EXPECT_EQ(color_of("//X Y Z Rf Gf Bf\n1 2 3 0.2 0 1\n"), (Rgb8{51, 0, 255}));
+}
+
+TEST_F(Import, ColoursWithoutNamesAreAGuess) {
+  const auto open = [&](const std::string& text) {
+    write_text(path("p.xyz"), text);
+    return open_voxel_source(path("p.xyz"));
+  };
+  std::string text = "1 2 3 255 128 0\n";
+  const auto guessed = open(text);
+  EXPECT_TRUE(guessed->has_colors());
+  EXPECT_TRUE(guessed->warnings().empty());
+  // A later line, behind those that the reader looks at first, is no colour.
+  for (int i = 1; i < 5'000; ++i) text += "1 2 3 255 128 0\n";
+  for (const char* last : {"1 2 3 255 256 0\n", "1 2 3 255 128 0.5\n", "1 2 3\n"}) {
+    const auto dropped = open(text + last);
+    EXPECT_FALSE(dropped->has_colors());
+    EXPECT_EQ(dropped->warnings(),
+              std::vector<std::string>{"its columns 4 to 6 are left out: they have no names, and "
+                                       "line 5001 has no colour there"});
+    EXPECT_EQ(import("p.xyz", with_levels(3)).read, 5'001u);
+  }
+}
+
+TEST_F(Import, TextsMayHaveCoordinatesThatAreNoNumbers) {
+  const auto counts = [&](const std::string& text) {
+    write_text(path("p.csv"), text);
+    const ImportResult result = import("p.csv", with_levels(3));
+    return std::pair(result.read, result.not_finite);
+  };
+  using Counts = std::pair<std::uint64_t, std::uint64_t>;
+  EXPECT_EQ(counts("x,y,z\n0,0,0\n1,,3\n,,\n4,4,\n1,2,3\n"), (Counts{5, 3}));
+  EXPECT_EQ(counts(",2,3\n0;0;0\n1;2;3\n"), (Counts{3, 1}));
+  EXPECT_EQ(counts("1.#QNAN 1 1\n0 0 0 # one\n-1.#IND00 2 3\n1 2 1.#INF # two\n1 2 3\n"),
+            (Counts{5, 3}));
+  // Blanks alone hold no empty field.
+  EXPECT_EQ(counts("0  0\t0\n1 2 3 \n"), (Counts{2, 0}));
 }
 
 /// Returns a binvox file of a grid of `side` voxels.

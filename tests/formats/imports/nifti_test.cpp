@@ -176,6 +176,10 @@ TEST_F(NiftiFiles, TheGridIsThatOfTheSformOrQform) {
     EXPECT_EQ(matrix->grid()->voxel_size, 4);
     EXPECT_EQ(matrix->grid()->origin, (Vec3d{0, 1, -8}));
     EXPECT_TRUE(matrix->warnings().empty());
+    // A matrix of zeros says nothing if there is another placement.
+    const auto zero =
+        open_with({.pixdim = {1, 2, 2, 2}, .qform = 1, .sform = 1, .qoffset = {10, -4, 0}});
+    EXPECT_EQ(zero->grid()->origin, (Vec3d{9, -5, -1}));
     const auto turned_matrix =
         open_with({.sform = 1, .srow = {-1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 1, 0}});
     EXPECT_TRUE(turned_matrix->warnings().empty());

@@ -175,6 +175,20 @@ TEST_F(Nrrd, TheGridIsThatOfTheSpace) {
   EXPECT_EQ(placed->grid()->voxel_size, 2);
   EXPECT_EQ(placed->grid()->origin, (Vec3d{9, -5, -0.5}));
   EXPECT_TRUE(placed->warnings().empty());
+  // Axes that say where they begin, by their borders or by the centres of their voxels.
+  const auto begun = open_with("spacings: 0.5 0.5 0.5\naxis mins: 10 -4 0");
+  EXPECT_EQ(begun->grid()->origin, (Vec3d{10, -4, 0}));
+  EXPECT_EQ(begun->grid()->voxel_size, 0.5);
+  const auto centred =
+      open_with("spacings: 0.5 0.5 0.5\naxismins: 10 -4 0\ncenters: node node cell");
+  EXPECT_EQ(centred->grid()->origin, (Vec3d{9.75, -4.25, 0}));
+  const auto ended =
+      open_with("axis mins: 10 -4 nan\naxis maxs: 11 -3 nan\nspace: 3D-right-handed");
+  EXPECT_EQ(ended->grid()->voxel_size, 0.5);
+  EXPECT_EQ(ended->grid()->origin, (Vec3d{10, -4, 0}));
+  const auto with_space =
+      open_with("axis mins: 10 -4 0\nspace origin: (1,2,3)\nspace dimension: 3");
+  EXPECT_EQ(with_space->grid()->origin, (Vec3d{0.5, 1.5, 2.5}));
   for (const char* along : {"(0,2,0) (2,0,0) (0,0,2)", "(-2,0,0) (0,2,0) (0,0,2)"})
     EXPECT_TRUE(open_with(std::string("space directions: ") + along)->warnings().empty());
   const auto turned = open_with("space directions: (1.6,1.2,0) (0,2,0) (0,0,2)");

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "formats/exports/exported_scene.hpp"
+#include "gzip_text.hpp"
 #include "random_volume.hpp"
 #include "voxdag/formats/exports/grids/export_slices.hpp"
 #include "voxdag/formats/exports/grids/export_vox.hpp"
@@ -142,6 +143,10 @@ TEST_F(Places, ExportedVoxelsComeBackToTheirPlace) {
       EXPECT_EQ(back.grid.origin, scene.grid.origin) << name;
       EXPECT_EQ(back.grid.voxel_size, scene.grid.voxel_size) << name;
     }
+    // The placement may lie beside the file as it was before it was compressed.
+    write("v.npy.gz", gzip(read_text(dir_ / "v.npy")));
+    EXPECT_EQ(import("v.npy.gz").dag, expected);
+    EXPECT_EQ(import("v.npy.gz").grid.origin, scene.grid.origin);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/io/resolved_output.hpp"
+#include "voxdag/formats/export_placement.hpp"
 #include "voxdag/formats/exports/count_voxels.hpp"
 
 namespace voxdag {
@@ -87,6 +88,12 @@ void write_placement(const std::filesystem::path& path, const Grid& grid, const 
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return;
   write_placement_file(path.string() + ".json", grid, window, layout, options);
+}
+
+void remove_placement(const std::filesystem::path& path) {
+  const std::filesystem::path beside = path.string() + ".json";
+  std::error_code ignored;
+  if (!read_placement(beside).is_null()) std::filesystem::remove(beside, ignored);
 }
 
 void write_placement_file(const std::filesystem::path& path, const Grid& grid, const Box3i& window,

@@ -64,6 +64,9 @@ struct ArrayLayout {
 void write_placement(const std::filesystem::path& path, const Grid& grid, const Box3i& window,
                      const ArrayLayout& layout, const ExportOptions& options);
 
+/// Removes PATH.json if an earlier export wrote it: the placement of a file that is no more.
+void remove_placement(const std::filesystem::path& path);
+
 /// Writes the placement to `file`.
 void write_placement_file(const std::filesystem::path& file, const Grid& grid, const Box3i& window,
                           const ArrayLayout& layout, const ExportOptions& options);

@@ -35,8 +35,8 @@ struct ExportOptions {
   /// The colours, normals and materials of points, faces and lists of coordinates: those that the
   /// file of the voxels stores, or those of another file of the same mesh. Empty: none.
   LookView look;
-  /// How the scene was turned before the export, so that another axis points up (export_scene.hpp):
-  /// `look` is that of the scene before, and PATH.json says it.
+  /// How the scene was turned before the export, so that another axis points up (export_scene.hpp).
+  /// `look` belongs to the scene before the turn. PATH.json records the turn.
   struct Turn {
     Orientation orientation;
     Vec3d origin;      ///< Of the grid before.

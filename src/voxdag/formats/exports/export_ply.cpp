@@ -21,8 +21,9 @@ class PlyFile {
     bool faces = false, normals = false, colors = false, materials = false;
   };
 
-  PlyFile(const std::filesystem::path& path, const Grid& grid, const Content& content)
-      : file_(path), grid_(grid), content_(content), use_float_(float_suffices(grid)) {
+  PlyFile(const std::filesystem::path& path, const Grid& grid, const Content& content,
+          const std::optional<ExportOptions::Turn>& turn)
+      : file_(path), grid_(grid), content_(content), turn_(turn), use_float_(float_suffices(grid)) {
     constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
     header_bytes_ = header(most, most, "").size();
     file_.write_zeros(header_bytes_);
@@ -65,10 +66,18 @@ class PlyFile {
                      const std::string& padding) const {
     const std::string type = use_float_ ? "float" : "double";
     std::string text = "ply\nformat binary_little_endian 1.0\ncomment made by voxdag\n";
-    text += "comment grid_origin " + shortest(grid_.origin.x) + " " + shortest(grid_.origin.y) +
-            " " + shortest(grid_.origin.z) + "\n";
+    const auto add_place = [&](const char* name, Vec3d place) {
+      text += std::string("comment ") + name;
+      for (int axis = 0; axis < 3; ++axis) text += " " + shortest(place[axis]);
+      text += "\n";
+    };
+    add_place("grid_origin", grid_.origin);
     text += "comment voxel_size " + shortest(grid_.voxel_size) + "\n";
     text += "comment resolution " + std::to_string(grid_.resolution()) + "\n";
+    if (turn_) {
+      text += std::string("comment up ") + turn_->up + "\ncomment from_up " + turn_->from_up + "\n";
+      add_place("origin_before", turn_->origin);
+    }
     text += "comment " + padding + "\nelement vertex " + std::to_string(vertices) + "\n";
     for (const char axis : {'x', 'y', 'z'}) text += "property " + type + " " + axis + "\n";
     if (content_.normals)
@@ -86,6 +95,7 @@ class PlyFile {
   AtomicFile file_;
   Grid grid_;
   Content content_;
+  std::optional<ExportOptions::Turn> turn_;
   bool use_float_;
   std::size_t header_bytes_ = 0;
   std::uint64_t vertices_ = 0, faces_ = 0;
@@ -193,7 +203,7 @@ void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels
                                      (look.has_colors() ? sizeof(Value8) : 0) +
                                      (look.has_materials() ? sizeof(std::uint16_t) : 0);
   const std::uint64_t count = count_for_export(path, voxels, window, vertex_bytes, options);
-  PlyFile file(path, grid, content_of(look, false));
+  PlyFile file(path, grid, content_of(look, false), options.turn);
   export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t mask) {
     for (; mask != 0; mask &= mask - 1) {
       const Vec3i voxel =
@@ -212,7 +222,7 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
   const std::uint64_t count = count_for_export(path, voxels, window, 0, options);
   LookReader look = options.look_reader();
   const bool by_voxel = !look.is_empty();
-  PlyFile file(path, grid, content_of(look, true));
+  PlyFile file(path, grid, content_of(look, true), options.turn);
   // In PLY all vertices come before all faces. So two walks compute the same surfaces.
   const auto for_each_surface = [&](const auto& fn) {
     export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t block) {

@@ -7,6 +7,8 @@
 
 #include "voxdag/algebra/reorient.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/formats/export_placement.hpp"
+#include "voxdag/formats/input_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -38,11 +40,9 @@ Box3i turned_box(const Box3i& box, const Orientation& orientation, int levels) {
 std::optional<char> up_of(const SceneMetadata& metadata) {
   if (const auto up = metadata.build.find("up"); up != metadata.build.end())
     return up->second == "y" || up->second == "z" ? std::optional(up->second[0]) : std::nullopt;
-  std::string name = metadata.source.name;
+  std::string name = unpacked_name(metadata.source.name).string();
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const char* packed : {".gz", ".zst"})
-    if (name.ends_with(packed)) name.resize(name.rfind('.'));
   for (const char* ending : {".glb", ".gltf"})
     if (name.ends_with(ending)) return 'y';
   for (const char* ending : {".vox", ".stl", ".3mf", ".las"})
@@ -69,12 +69,12 @@ std::vector<std::filesystem::path> export_scene(const std::filesystem::path& pat
                                *from + " points up in it");
     return export_voxels(path, voxels, grid, content, options);
   }
-  // One quarter turn about x takes y to z.
-  const Orientation orientation = rotated(0, *to == 'z' ? 1 : -1);
+  const char from_up = *to == 'z' ? 'y' : 'z';
+  const Orientation orientation = turn_of_export(from_up);
   const Svdag turned = reorient(*dag, orientation, work);
   const MemoryReservation held(work.memory, turned.view().bytes());
   if (options.window) options.window = turned_box(*options.window, orientation, grid.levels);
-  options.turn = {orientation, grid.origin, *to, from.value_or(*to == 'z' ? 'y' : 'z')};
+  options.turn = {orientation, grid.origin, *to, from_up};
   return export_voxels(path, VoxelSet(turned.view()), turned_grid(grid, orientation), content,
                        options);
 }

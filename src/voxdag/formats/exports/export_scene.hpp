@@ -1,5 +1,5 @@
 #pragma once
-/// Exports scenes, turned so that the axis points up that the format's custom or the user wants.
+/// Exports scenes, turned so that the axis that the user or the format's custom names points up.
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/file/scene_metadata.hpp"
 #include "voxdag/formats/exports/export_voxels.hpp"

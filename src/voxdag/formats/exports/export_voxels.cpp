@@ -68,20 +68,21 @@ struct ExportFormat {
   std::string_view ending;
   Files (*write)(const Request&);
   bool has_colors;
-  char up = 0;  ///< The axis that points up by custom; 0: none.
+  char up = 0;                 ///< The axis that points up by custom; 0: none.
+  bool has_placement = false;  ///< `write` writes PATH.json, or removes that of an earlier export.
 };
 
 /// ".spc.npy" comes before ".npy": the first ending that matches counts.
-constexpr ExportFormat kExportFormats[] = {{".spc.npy", dag_file<export_spc>, false},
-                                           {".npy", npy, true},
-                                           {".raw", one_file<export_raw>, false},
+constexpr ExportFormat kExportFormats[] = {{".spc.npy", dag_file<export_spc>, false, 0, true},
+                                           {".npy", npy, true, 0, true},
+                                           {".raw", one_file<export_raw>, false, 0, true},
                                            {".ply", ply, true},
                                            {".glb", one_file<export_glb>, true, 'y'},
                                            {".obj", one_file<export_obj>, true},
-                                           {".stl", one_file<export_stl>, false, 'z'},
-                                           {".vox", vox, true, 'z'},
+                                           {".stl", one_file<export_stl>, false, 'z', true},
+                                           {".vox", vox, true, 'z', true},
                                            {".binvox", one_file<export_binvox>, false},
-                                           {".schem", one_file<export_schem>, true, 'y'},
+                                           {".schem", one_file<export_schem>, true, 'y', true},
                                            {".voxel.json", dag_file<export_playcanvas>, false},
                                            {".vdb", one_file<export_vdb>, true},
                                            {".nvdb", one_file<export_vdb>, true}};
@@ -127,7 +128,9 @@ std::vector<std::filesystem::path> export_voxels(const std::filesystem::path& pa
                 "cannot export to '" +
                     (content.format.empty() ? path.extension().string() : content.format) +
                     "': the extension must be " + export_extensions());
-  return format->write({path, voxels, grid, content, options});
+  Files files = format->write({path, voxels, grid, content, options});
+  if (!format->has_placement) remove_placement(path);
+  return files;
 }
 
 }  // namespace voxdag

@@ -7,11 +7,11 @@
 #include <system_error>
 #include <utility>
 
-#include "voxdag/algebra/reorient.hpp"
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/io/mapped_file.hpp"
-#include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/export_placement.hpp"
+#include "voxdag/formats/imports/derived_source.hpp"
+#include "voxdag/formats/input_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -49,7 +49,7 @@ FilePlacement parse_placement(const nlohmann::json& json, bool is_folder) {
     const auto up = json["turned"].at("from_up").get<std::string>();
     if (up != "y" && up != "z") throw Error("its axis that points up is neither y nor z");
     placement.up = up[0];
-    placement.orientation = rotated(0, up == "y" ? 1 : -1);
+    placement.orientation = turn_of_export(up[0]);
     placement.grid.origin = vector_of<double>(json["turned"].at("origin_before"));
   }
   const nlohmann::json& array = json.at("array");
@@ -71,27 +71,19 @@ FilePlacement parse_placement(const nlohmann::json& json, bool is_folder) {
   return placement;
 }
 
-class PlacedVoxels : public VoxelSource {
+class PlacedVoxels final : public DerivedSource {
  public:
   PlacedVoxels(std::unique_ptr<VoxelSource> source, const FilePlacement& placement,
                std::string name)
-      : source_(std::move(source)), placement_(placement), name_(std::move(name)) {}
+      : DerivedSource(std::move(source)), placement_(placement), name_(std::move(name)) {}
 
-  bool has_points() const override { return false; }
-  bool has_colors() const override { return source_->has_colors(); }
-  bool has_palette() const override { return source_->has_palette(); }
   bool has_place() const override { return true; }
   std::optional<Grid> grid() const override { return placement_.grid; }
   std::optional<char> up() const override { return placement_.up; }
-  std::vector<std::string> warnings() const override { return source_->warnings(); }
+  Vec3l first_voxel() const override { return {}; }
   void visit_all(const VisitBatch& visit) const override {
     const Vec3d first = static_cast<Vec3d>(source_->first_voxel());
-    std::vector<Vec3d> places;
-    source_->visit_all([&](const VoxelBatch& batch) {
-      places.clear();
-      for (const Vec3d place : batch.places) places.push_back(place_of(place + first));
-      visit({places, batch.colors});
-    });
+    visit_moved(visit, [&](Vec3d place) { return place_of(place + first); });
   }
 
  private:
@@ -110,7 +102,6 @@ class PlacedVoxels : public VoxelSource {
     return Vec3d(source_cell(placement_.orientation, Vec3i(place), placement_.grid.levels));
   }
 
-  std::unique_ptr<VoxelSource> source_;
   FilePlacement placement_;
   std::string name_;  ///< Of the file with the placement.
 };
@@ -122,14 +113,14 @@ std::unique_ptr<VoxelSource> with_file_placement(const std::filesystem::path& pa
   if (source->has_points() || source->has_place()) return source;
   std::error_code ignored;
   const bool is_folder = std::filesystem::is_directory(path, ignored);
-  const std::filesystem::path beside =
+  std::filesystem::path beside =
       is_folder ? path / "placement.json" : std::filesystem::path(path.string() + ".json");
-  if (!std::filesystem::is_regular_file(beside, ignored)) return source;
-  constexpr SizeLimit kMaxBytes{std::uint64_t{1} << 20, "a placement"};
-  const MappedFile file(beside, MappedFile::Access::kSequential, kMaxBytes);
-  const auto json = nlohmann::json::parse(file.text(), nullptr, /*allow_exceptions=*/false);
-  // Files of other programs may have this name.
-  if (!json.is_object() || !json.contains("placement") || !json.contains("grid")) return source;
+  nlohmann::json json = read_placement(beside);
+  if (json.is_null() && !is_folder) {
+    beside = unpacked_name(path).string() + ".json";
+    json = read_placement(beside);
+  }
+  if (json.is_null()) return source;
   try {
     const FilePlacement placement = parse_placement(json, is_folder);
     return std::make_unique<PlacedVoxels>(std::move(source), placement, beside.string());

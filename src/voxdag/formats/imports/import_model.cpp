@@ -12,7 +12,7 @@ void check_grid_options(const VoxelSource& source, const ImportOptions& options)
     if (!options.resolution && !options.voxel_size && !source.grid())
       throw Error("", "", "holds points, which need -r or --voxel-size");
     if (options.resolution && options.voxel_size)
-      throw Error("", "", "holds points; of -r and --voxel-size one is enough");
+      throw Error("", "", "holds points: give -r or --voxel-size, not both");
     if (options.origin && (options.bounds || (!options.voxel_size && !options.resolution)))
       throw Error("", "",
                   "holds points; --origin goes with -r or --voxel-size, and not with --bounds");

@@ -6,34 +6,10 @@
 
 #include "voxdag/algebra/align_grids.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/formats/imports/derived_source.hpp"
 
 namespace voxdag {
 namespace {
-
-/// A source that passes on what another says.
-class DerivedSource : public VoxelSource {
- public:
-  explicit DerivedSource(std::unique_ptr<VoxelSource> source) : source_(std::move(source)) {}
-
-  bool has_points() const override { return source_->has_points(); }
-  bool has_colors() const override { return source_->has_colors(); }
-  bool has_palette() const override { return source_->has_palette(); }
-  std::vector<std::string> warnings() const override { return source_->warnings(); }
-
- protected:
-  /// Calls visit() with all places as place_of() returns them.
-  template <class PlaceOf>
-  void visit_moved(const VisitBatch& visit, const PlaceOf& place_of) const {
-    std::vector<Vec3d> places;
-    source_->visit_all([&](const VoxelBatch& batch) {
-      places.clear();
-      for (const Vec3d place : batch.places) places.push_back(place_of(place));
-      visit({places, batch.colors});
-    });
-  }
-
-  std::unique_ptr<VoxelSource> source_;
-};
 
 class MovedPoints final : public DerivedSource {
  public:
@@ -47,6 +23,7 @@ class MovedPoints final : public DerivedSource {
     // The transform rounds once more.
     return {2 * error.relative, {most, most, most}};
   }
+  std::optional<Grid> grid() const override { return std::nullopt; }
   void visit_all(const VisitBatch& visit) const override {
     visit_moved(visit, [this](Vec3d point) { return transform_.point(point); });
   }
@@ -71,8 +48,8 @@ class TurnedVoxels final : public DerivedSource {
     if (!grid_) {
       if (transform.factor() != 1 || transform.point({}) != Vec3d{})
         throw Error("", "",
-                    "does not say where its voxels lie: --voxel-size and --origin do that, not "
-                    "--unit, --scale and --translate");
+                    "does not say where its voxels lie, so --unit, --scale and --translate cannot "
+                    "move them: --voxel-size and --origin place them");
       find_sides();
       return;
     }
@@ -85,9 +62,8 @@ class TurnedVoxels final : public DerivedSource {
       if (is_flipped_[axis]) grid_->origin[axis] -= sides_[axis] * grid_->voxel_size;
   }
 
-  bool has_place() const override { return source_->has_place(); }
-  std::optional<char> up() const override { return source_->up(); }
   std::optional<Grid> grid() const override { return grid_; }
+  Vec3l first_voxel() const override { return {}; }
   void visit_all(const VisitBatch& visit) const override {
     visit_moved(visit, [this](Vec3d voxel) {
       Vec3d turned;
@@ -121,7 +97,7 @@ class JoinedSource final : public VoxelSource {
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       const VoxelSource& source = *sources_[i];
       if (source.has_points() != has_points())
-        throw Error("", "", "holds points, but another input voxels, or the other way round");
+        throw Error("", "", "is joined with others: all of them must hold points, or all voxels");
       has_colors_ |= source.has_colors();
       if (!has_points()) add_grid(i);
     }
@@ -171,8 +147,7 @@ class JoinedSource final : public VoxelSource {
     const std::optional<Grid> grid = sources_[i]->grid();
     if (i > 0 && grid.has_value() != grid_.has_value())
       throw Error("", "",
-                  "says where its voxels lie, but another input does not, or the other way "
-                  "round");
+                  "is joined with others: all of them must say where their voxels lie, or none");
     if (!grid || i == 0) {
       grid_ = grid;
       return;

@@ -5,6 +5,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/with_file_name.hpp"
+#include "voxdag/formats/imports/derived_source.hpp"
 #include "voxdag/formats/imports/file_placement.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
@@ -79,40 +80,33 @@ std::unique_ptr<VoxelSource> open_by_name(const Path& path, std::string name,
 }
 
 /// The source of an unpacked file. Errors name the file that was given.
-class UnpackedSource : public VoxelSource {
+class UnpackedSource final : public DerivedSource {
  public:
-  UnpackedSource(Path given, InputFile input, const std::string& name, const Options& options)
-      : given_(std::move(given)),
-        input_(std::move(input)),
-        source_(with_file_name(given_.string(),
-                               [&] { return open_by_name(input_.path(), name, options); })) {}
+  UnpackedSource(const Path& given, InputFile input, const std::string& name,
+                 const Options& options)
+      : DerivedSource(with_file_name(
+            given.string(), [&] { return open_by_name(input.path(), name, options); },
+            input.path().string())),
+        given_(given.string()),
+        input_(std::move(input)) {}
 
-  bool has_points() const override { return source_->has_points(); }
-  bool has_colors() const override { return source_->has_colors(); }
-  CoordinateError coordinate_error() const override { return source_->coordinate_error(); }
-  bool has_palette() const override { return source_->has_palette(); }
-  std::optional<Grid> grid() const override { return source_->grid(); }
-  bool has_place() const override { return source_->has_place(); }
-  Vec3l first_voxel() const override { return source_->first_voxel(); }
-  std::optional<char> up() const override { return source_->up(); }
-  std::vector<std::string> warnings() const override { return source_->warnings(); }
   void visit_all(const VisitBatch& visit) const override {
-    with_file_name(given_.string(), [&] { source_->visit_all(visit); });
+    with_file_name(
+        given_, [&] { source_->visit_all(visit); }, input_.path().string());
   }
 
  private:
-  Path given_;
+  std::string given_;
   InputFile input_;
-  std::unique_ptr<VoxelSource> source_;
 };
 
 std::unique_ptr<VoxelSource> open_input_file(const Path& path, const Options& options) {
-  const std::string ending = options.format.empty() ? "" : "." + options.format;
   // The reader of NIfTI unpacks as it reads.
-  if (const std::string name = path.string() + ending; name.ends_with(".nii.gz"))
-    return open_by_name(path, name, options);
+  if (options.format.empty() && path.string().ends_with(".nii.gz"))
+    return open_by_name(path, path.string(), options);
   InputFile input(path, options.work);
-  const std::string name = input.name().string() + ending;
+  std::string name = input.name().string();
+  if (!options.format.empty()) name = unpacked_name(name + "." + options.format).string();
   if (!input.is_in_memory()) return open_by_name(path, name, options);
   return std::make_unique<UnpackedSource>(path, std::move(input), name, options);
 }

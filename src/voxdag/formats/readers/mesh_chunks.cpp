@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "voxdag/core/io/resolved_output.hpp"
+#include "voxdag/formats/export_placement.hpp"
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
@@ -30,6 +31,7 @@ std::unique_ptr<MeshChunks> open_mesh_chunks(const std::filesystem::path& path,
     case MeshFormat::kPly:
       return open_ply_chunks(std::move(file), path, options, chunk_bytes);
     case MeshFormat::kStl:
+      if (offset_beside(path) != Vec3d{}) return nullptr;
       return open_stl_chunks(std::move(file), path, options, chunk_bytes);
     default:
       return nullptr;

@@ -4,6 +4,7 @@
 #include <new>
 
 #include "voxdag/core/float_origin.hpp"
+#include "voxdag/formats/export_placement.hpp"
 #include "voxdag/formats/input_file.hpp"
 #include "voxdag/formats/readers/assimp/assimp_reader.hpp"
 #include "voxdag/formats/readers/collada/collada_reader.hpp"
@@ -63,6 +64,8 @@ MeshWithAppearance read(const std::filesystem::path& path, const ReadOptions& op
       result.mesh.origin = source.origin;
       used = used_vertices(source, result.mesh);
     }
+    if (detect_mesh_format(source.bytes, extension) == MeshFormat::kStl)
+      result.mesh.origin = result.mesh.origin + offset_beside(path);
     remove_bad_triangles(source, used.bad_triangles, result);
     source.end_pass();
     if (options.work.memory != nullptr)

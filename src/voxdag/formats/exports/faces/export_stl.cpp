@@ -57,7 +57,7 @@ void export_stl(const std::filesystem::path& path, const VoxelSet& voxels, const
       write_triangle(file, normal, corners[a], corners[b], corners[c]);
   });
   file.commit();
-  if (!offset) return;
+  if (!offset) return remove_placement(path);
   ArrayLayout layout{"triangles", "float32", ""};
   layout.offset = offset;
   write_placement(path, world, window, layout, options);

@@ -161,14 +161,13 @@ std::vector<std::filesystem::path> export_vox(const std::filesystem::path& path,
   for (int axis = 0; axis < 3; ++axis)
     place.append(axis == 0 ? "" : ", ").append(std::to_string(position[axis]));
   ArrayLayout layout{
-      is_cut ? "sections of 2000 voxels a side; the first voxel of each section lies at " + place
-             : "a scene; voxel window.lo lies at " + place,
+      "sections of 2000 voxels a side; the first voxel of each section lies at " + place,
       "palette indices", ""};
-  if (!is_cut) layout.lo_in_file = position;
-  if (is_cut)
-    write_placement_file(path.string() + ".json", grid, window, layout, options);
-  else
-    write_placement(path, grid, window, layout, options);
+  if (is_cut) write_placement_file(path.string() + ".json", grid, window, layout, options);
+  layout.content = "a scene; voxel window.lo lies at " + place;
+  layout.lo_in_file = position;
+  for (const auto& [file, box] : sections)
+    if (file != path || !is_cut) write_placement(file, grid, box, layout, options);
   return files;
 }
 

@@ -54,7 +54,8 @@ std::uint32_t parse_color(std::string_view token) {
 /// A point as the file has it.
 struct PcdPoint {
   Vec3d place;
-  std::uint32_t color = 0;  ///< 0xAARRGGBB
+  std::uint32_t color = 0;  ///< 0xAARRGGBB, of a field rgb or rgba.
+  Vec3d channels;           ///< Of the fields r, g and b.
 };
 
 class PcdPoints : public VoxelSource {
@@ -78,6 +79,7 @@ class PcdPoints : public VoxelSource {
       if (field.count == 1 && field.size == 4) used_.push_back(field);
     }
     if (header_.data == PcdData::kCompressed && header_.points > 0) find_compressed();
+    if (used_.size() == 3) find_channels();
   }
 
   bool has_points() const override { return true; }
@@ -90,25 +92,52 @@ class PcdPoints : public VoxelSource {
   }
   void visit_all(const VisitBatch& visit) const override {
     BatchedVoxels points(visit);
-    const bool is_text = header_.data == PcdData::kAscii;
-    try {
-      if (is_text)
-        visit_text(points);
-      else if (header_.data == PcdData::kBinary)
-        visit_binary(points);
-      else
-        visit_compressed(points);
-    } catch (const Fault& fault) {
-      throw_fault(source_, fault, is_text ? '\n' : kNoLines);
-    }
+    for_each_point([&](const PcdPoint& point) { add(points, point); });
     points.finish();
   }
 
  private:
   Error fail_in_header(const std::string& reason) const { return {source_.name, "header", reason}; }
 
+  /// Finds colours in fields r, g and b: of bytes, 16 bits, or real numbers to 1 or 255.
+  void find_channels() {
+    for (const char* const name : {"r", "g", "b"}) {
+      const int found = header_.find(name);
+      if (found < 0 || header_.fields[found].count != 1) return used_.resize(3);
+      used_.push_back(header_.fields[found]);
+    }
+    if (used_[3].type != 'F') {
+      color_range_ = used_[3].size == 2 ? 65535 : 255;
+      return;
+    }
+    for_each_point([&](const PcdPoint& point) {
+      if (std::max({point.channels.x, point.channels.y, point.channels.z}) >= 2) color_range_ = 255;
+    });
+  }
+
+  /// Calls use(point) for all points.
+  template <class Use>
+  void for_each_point(const Use& use) const {
+    const bool is_text = header_.data == PcdData::kAscii;
+    try {
+      if (is_text)
+        visit_text(use);
+      else if (header_.data == PcdData::kBinary)
+        visit_binary(use);
+      else
+        visit_compressed(use);
+    } catch (const Fault& fault) {
+      throw_fault(source_, fault, is_text ? '\n' : kNoLines);
+    }
+  }
+
   void add(BatchedVoxels& points, const PcdPoint& point) const {
     if (!has_colors()) return points.add(point.place);
+    if (used_.size() > 4) {
+      const Vec3d channels = point.channels * (1 / color_range_);
+      return points.add(point.place,
+                        {color_byte(channels.x), color_byte(channels.y), color_byte(channels.z)});
+    }
     const std::uint32_t color = point.color;
     points.add(point.place,
                {static_cast<std::uint8_t>(color >> 16), static_cast<std::uint8_t>(color >> 8),
@@ -118,11 +147,14 @@ class PcdPoints : public VoxelSource {
   void load_field(std::size_t used, const char* at, PcdPoint& point) const {
     if (used < 3)
       point.place[static_cast<int>(used)] = load_number(used_[used], at);
+    else if (used_.size() > 4)
+      point.channels[static_cast<int>(used) - 3] = load_number(used_[used], at);
     else
       point.color = load_value<std::uint32_t>(at);
   }
 
-  void visit_text(BatchedVoxels& points) const {
+  template <class Use>
+  void visit_text(const Use& use) const {
     std::string_view text = source_.bytes.substr(header_.body);
     PassedPages pages(file_, text.data());
     for (std::uint64_t i = 0; i < header_.points;) {
@@ -132,7 +164,7 @@ class PcdPoints : public VoxelSource {
       const std::string_view line = next_line(text, '\n');
       pages.pass(text.data());
       if (trim(line).empty()) continue;
-      add(points, parse_point(line));
+      use(parse_point(line));
       ++i;
     }
   }
@@ -144,11 +176,16 @@ class PcdPoints : public VoxelSource {
       if (token.empty())
         throw Fault{line.data(), "the point has " + std::to_string(value) + " of " +
                                      std::to_string(header_.point_values) + " values"};
-      for (std::size_t used = 0; used < 3; ++used)
-        if (used_[used].ordinal == value &&
-            !parse_float(token, point.place[static_cast<int>(used)]))
-          throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
-      if (has_colors() && used_[3].ordinal == value) point.color = parse_color(token);
+      for (std::size_t used = 0; used < used_.size(); ++used) {
+        if (used_[used].ordinal != value) continue;
+        const bool is_channel = used >= 3;
+        if (is_channel && used_.size() == 4)
+          point.color = parse_color(token);
+        else if (!parse_float(token, is_channel ? point.channels[static_cast<int>(used) - 3]
+                                                : point.place[static_cast<int>(used)]))
+          throw Fault{token.data(), (is_channel ? "colour " : "coordinate ") + in_quotes(token) +
+                                        " is not a number"};
+      }
     }
     const std::string_view extra = next_token(line);
     if (!extra.empty())
@@ -156,14 +193,15 @@ class PcdPoints : public VoxelSource {
     return point;
   }
 
-  void visit_binary(BatchedVoxels& points) const {
+  template <class Use>
+  void visit_binary(const Use& use) const {
     const char* at = source_.bytes.data() + header_.body;
     PassedPages pages(file_, at);
     for (std::uint64_t i = 0; i < header_.points; ++i) {
       PcdPoint point;
       for (std::size_t used = 0; used < used_.size(); ++used)
         load_field(used, at + used_[used].offset, point);
-      add(points, point);
+      use(point);
       at += header_.point_bytes;
       pages.pass(at);
     }
@@ -203,7 +241,8 @@ class PcdPoints : public VoxelSource {
   }
 
   /// Decompresses as often as there are fields to read, so that no field is held in memory.
-  void visit_compressed(BatchedVoxels& points) const {
+  template <class Use>
+  void visit_compressed(const Use& use) const {
     if (header_.points == 0) return;
     std::vector<LzfStream> streams;
     std::vector<std::vector<char>> columns;
@@ -227,7 +266,7 @@ class PcdPoints : public VoxelSource {
         PcdPoint point;
         for (std::size_t used = 0; used < used_.size(); ++used)
           load_field(used, columns[used].data() + i * used_[used].size, point);
-        add(points, point);
+        use(point);
       }
     }
   }
@@ -235,7 +274,8 @@ class PcdPoints : public VoxelSource {
   MappedFile file_;
   MeshSource source_;
   PcdHeader header_;
-  std::vector<PcdField> used_;   ///< x, y, z and perhaps the colour.
+  std::vector<PcdField> used_;   ///< x, y, z, and perhaps a packed colour, or r, g and b.
+  double color_range_ = 1;       ///< The greatest component of r, g and b.
   std::string_view compressed_;  ///< None if no point is compressed.
   bool is_stored_ = false;       ///< The data of a compressed file are as they were.
 };

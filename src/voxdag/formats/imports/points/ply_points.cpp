@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "voxdag/formats/export_placement.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
@@ -26,6 +27,7 @@ class PlyPoints : public VoxelSource {
       : file_(path, MappedFile::Access::kSequential),
         source_{file_.text(), path.string(), {}, &file_, {}},
         header_(parse_ply_header(source_, PlyUse::kPoints)) {
+    read_comments();
     for (const std::string_view axis : {"x", "y", "z"}) columns_.push_back(vertex().find({axis}));
     std::vector<int> color = find_ply_color(vertex());
     const bool is_splat = color.empty();
@@ -41,7 +43,8 @@ class PlyPoints : public VoxelSource {
   }
 
   bool has_points() const override { return true; }
-  std::optional<Grid> grid() const override { return grid_of_comments(); }
+  std::optional<Grid> grid() const override { return grid_; }
+  std::optional<char> up() const override { return up_; }
   bool has_colors() const override { return columns_.size() > 3; }
   CoordinateError coordinate_error() const override {
     const bool has_floats = std::any_of(columns_.begin(), columns_.begin() + 3, [&](int property) {
@@ -58,22 +61,26 @@ class PlyPoints : public VoxelSource {
  private:
   const PlyElement& vertex() const { return header_.elements[header_.vertex]; }
 
-  /// Returns the grid that voxdag's own exports name in their comments.
-  std::optional<Grid> grid_of_comments() const {
+  /// Reads the grid that voxdag's own exports of points name in their comments, and their turn.
+  void read_comments() {
     std::string_view header = source_.bytes.substr(0, header_.body);
-    if (header.find("comment made by voxdag") == header.npos) return std::nullopt;
-    Vec3d origin;
+    if (header.find("comment made by voxdag") == header.npos) return;
+    Vec3d origin, origin_before;
     double voxel_size = 0, resolution = 0;
-    int found = 0;
+    int found = 0, found_before = 0;
+    std::string_view from_up;
     while (!header.empty()) {
       std::string_view line = next_line(header, header_.line_end);
       if (next_token(line) != "comment") continue;
       const std::string_view name = next_token(line);
-      const auto number = [&](double& value) { found += parse_float(next_token(line), value); };
+      const auto number = [&](double& value) { return int{parse_float(next_token(line), value)}; };
       if (name == "grid_origin")
-        for (int axis = 0; axis < 3; ++axis) number(origin[axis]);
-      if (name == "voxel_size") number(voxel_size);
-      if (name == "resolution") number(resolution);
+        for (int axis = 0; axis < 3; ++axis) found += number(origin[axis]);
+      if (name == "voxel_size") found += number(voxel_size);
+      if (name == "resolution") found += number(resolution);
+      if (name == "from_up") from_up = next_token(line);
+      if (name == "origin_before")
+        for (int axis = 0; axis < 3; ++axis) found_before += number(origin_before[axis]);
     }
     int levels = kMinLevels;
     while (levels < kMaxLevels && std::ldexp(1.0, levels) < resolution) ++levels;
@@ -81,8 +88,13 @@ class PlyPoints : public VoxelSource {
                                        [](const PlyElement& e) { return e.name == "face"; });
     if (found != 5 || has_faces || std::ldexp(1.0, levels) != resolution || !(voxel_size > 0) ||
         !is_finite(origin) || !std::isfinite(kSubvoxels / voxel_size))
-      return std::nullopt;
-    return Grid{levels, origin, voxel_size, kSubvoxels / voxel_size};
+      return;
+    if ((from_up == "y" || from_up == "z") && found_before == 3 && is_finite(origin_before)) {
+      up_ = from_up[0];
+      turn_ = turn_of_export(*up_);
+      origin = origin_before;
+    }
+    grid_ = {levels, origin, voxel_size, kSubvoxels / voxel_size};
   }
 
   PlyType type_of(int property) const {
@@ -100,7 +112,11 @@ class PlyPoints : public VoxelSource {
   }
 
   void add(BatchedVoxels& points, const Values& values) const {
-    const Vec3d point{values[0], values[1], values[2]};
+    Vec3d point;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double value = values[static_cast<std::size_t>(axis)];
+      point[turn_.source_axis[axis]] = turn_.is_flipped[axis] ? -value : value;
+    }
     if (!has_colors()) return points.add(point);
     Rgb8 color;
     for (std::size_t c = 0; c < 3; ++c)
@@ -194,6 +210,9 @@ class PlyPoints : public VoxelSource {
   MappedFile file_;
   MeshSource source_;
   PlyHeader header_;
+  std::optional<Grid> grid_;  ///< Before the turn.
+  std::optional<char> up_;    ///< The axis that pointed up before the turn.
+  Orientation turn_;
   std::vector<int> columns_;  ///< The properties of the values.
   std::array<double, 3> color_scales_{};
   double color_offset_ = 0;

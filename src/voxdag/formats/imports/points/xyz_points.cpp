@@ -2,6 +2,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,29 +23,70 @@ constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 constexpr std::size_t kSampledPoints = 4096;
 constexpr std::size_t kCoordinates = 3, kValues = 6;  ///< Coordinates, then a colour.
 
-bool is_separator(char c) {
-  return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r' || c == '"';
-}
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; }
+bool is_comma(char c) { return c == ',' || c == ';'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Removes the next field from a line; empty at its end.
-std::string_view next_field(std::string_view& line) {
-  std::size_t first = 0;
-  while (first < line.size() && is_separator(line[first])) ++first;
-  std::size_t last = first;
-  while (last < line.size() && !is_separator(line[last])) ++last;
-  const std::string_view field = line.substr(first, last - first);
-  line.remove_prefix(last);
-  return field;
-}
+/// Cuts a line into fields. Beside a comma or semicolon, a field may be empty.
+class Fields {
+ public:
+  explicit Fields(std::string_view line) : rest_(line) {}
+
+  /// Sets `field` to the next one. Returns false if there is none.
+  bool next(std::string_view& field) {
+    skip_blanks();
+    if (rest_.empty() && !is_after_comma_) return false;
+    std::size_t end = 0;
+    while (end < rest_.size() && !is_blank(rest_[end]) && !is_comma(rest_[end])) ++end;
+    field = rest_.substr(0, end);
+    rest_.remove_prefix(end);
+    skip_blanks();
+    is_after_comma_ = !rest_.empty() && is_comma(rest_[0]);
+    if (is_after_comma_) rest_.remove_prefix(1);
+    return true;
+  }
+
+ private:
+  void skip_blanks() {
+    std::size_t blanks = 0;
+    while (blanks < rest_.size() && is_blank(rest_[blanks])) ++blanks;
+    rest_.remove_prefix(blanks);
+  }
+  std::string_view rest_;
+  bool is_after_comma_ = false;
+};
 
 std::vector<std::string_view> fields_of(std::string_view line) {
   std::vector<std::string_view> fields;
-  for (;;) {
-    const std::string_view field = next_field(line);
-    if (field.empty()) return fields;
-    fields.push_back(field);
-  }
+  std::string_view field;
+  for (Fields rest(line); rest.next(field);) fields.push_back(field);
+  return fields;
+}
+
+/// Returns whether Windows wrote a number that is not finite: "1.#QNAN", "-1.#IND", "1.#INF00".
+bool is_windows_nan(std::string_view field) {
+  const std::size_t sign = field.rfind('#');
+  return sign != field.npos && sign > 1 && field[sign - 1] == '.' && field[sign - 2] == '1';
+}
+
+/// Parses a number. Numbers of is_windows_nan() are NaN.
+bool parse_number(std::string_view field, double& value) {
+  if (parse_float(field, value)) return true;
+  value = std::numeric_limits<double>::quiet_NaN();
+  return is_windows_nan(field);
+}
+
+/// Removes a comment, which begins with # or //, from a line.
+std::string_view without_comment(std::string_view line) {
+  std::size_t end = line.find('#');
+  while (end != line.npos && is_windows_nan(line.substr(0, end + 1))) end = line.find('#', end + 1);
+  return line.substr(0, std::min(end, line.find("//")));
+}
+
+bool is_byte_text(std::string_view field) {
+  double value = 0;
+  return std::all_of(field.begin(), field.end(), is_digit) && parse_float(field, value) &&
+         value <= 255;
 }
 
 /// Returns whether a line has commas inside numbers, and another character between them.
@@ -65,7 +107,10 @@ std::size_t value_of_name(std::string_view name) {
   constexpr std::string_view kNames[][kValues] = {
       {"x", "y", "z", "r", "g", "b"},
       {"points:0", "points:1", "points:2", "red", "green", "blue"},
-      {"points_0", "points_1", "points_2", "rgb:0", "rgb:1", "rgb:2"}};
+      {"points_0", "points_1", "points_2", "rgb:0", "rgb:1", "rgb:2"},
+      {"", "", "", "r8", "g8", "b8"},
+      {"", "", "", "rf", "gf", "bf"}};
+  if (lower.empty()) return kValues;
   for (const auto& names : kNames)
     for (std::size_t value = 0; value < kValues; ++value)
       if (lower == names[value]) return value;
@@ -121,7 +166,7 @@ class XyzPoints : public VoxelSource {
     for (std::uint64_t number = 1; !text.empty(); ++number) {
       std::string_view line = next_line(text, line_end);
       if (line.size() > kMaxLineBytes) fail(number, "is longer than 1 MiB");
-      line = line.substr(0, std::min(line.find('#'), line.find("//")));
+      line = without_comment(line);
       if (number == header_line_ || trim(line).empty()) continue;
       if (!use(line, number)) return;
     }
@@ -144,10 +189,11 @@ class XyzPoints : public VoxelSource {
         continue;
       }
       if (fields.empty() || count_of(line)) continue;
-      if (parse_float(fields[0], ignored)) break;
-      if (fields.size() < kCoordinates || header_line_ > 0 ||
+      const bool has_numbers =
           std::any_of(fields.begin(), fields.end(),
-                      [&](std::string_view field) { return parse_float(field, ignored); }))
+                      [&](std::string_view field) { return parse_number(field, ignored); });
+      if (fields[0].empty() ? has_numbers : parse_number(fields[0], ignored)) break;
+      if (fields.size() < kCoordinates || header_line_ > 0 || has_numbers)
         fail(number, "number 1, " + in_quotes(fields[0]) + ", is not a number");
       header_line_ = number;
       names = line;
@@ -192,8 +238,7 @@ class XyzPoints : public VoxelSource {
       fewest = std::min(fewest, fields.size());
       for (std::size_t i = kCoordinates; i < std::min(kColumns, fields.size()); ++i) {
         double value = 0;
-        is_byte[i] &= std::all_of(fields[i].begin(), fields[i].end(), is_digit) &&
-                      parse_float(fields[i], value) && value <= 255;
+        is_byte[i] &= is_byte_text(fields[i]) && parse_float(fields[i], value);
         greatest[i] = std::max(greatest[i], value);
       }
       return ++points < kSampledPoints;
@@ -206,14 +251,37 @@ class XyzPoints : public VoxelSource {
       const bool are_colors =
           are_bytes && std::max({greatest[first], greatest[first + 1], greatest[first + 2]}) > 1;
       if (!are_colors) continue;
+      const std::string columns =
+          "its columns " + std::to_string(first + 1) + " to " + std::to_string(first + 3);
+      if (const std::uint64_t line = line_without_color(first)) {
+        warnings_.push_back(columns + " are left out: they have no names, and line " +
+                            std::to_string(line) + " has no colour there");
+        return;
+      }
       for (std::size_t c = 0; c < 3; ++c) columns_.push_back(first + c);
       return;
     }
     if (fewest >= kValues)
       warnings_.emplace_back(
           "its columns after the third are left out: they have no names, and are no colours of "
-          "whole "
-          "numbers from 0 to 255");
+          "whole numbers from 0 to 255");
+  }
+
+  /// Returns the first line whose columns [first, first + 3) are no whole numbers from 0 to 255;
+  /// 0 if there is none.
+  std::uint64_t line_without_color(std::size_t first) const {
+    PassedPages pages(file_, file_.text().data());
+    std::uint64_t found = 0;
+    for_each_line([&](std::string_view line, std::uint64_t number) {
+      if (count_of(line)) return true;
+      Fields fields(line);
+      std::string_view field;
+      for (std::size_t column = 0; column < first + 3; ++column)
+        if (!fields.next(field) || (column >= first && !is_byte_text(field))) found = number;
+      pages.pass(line.data());
+      return found == 0;
+    });
+    return found;
   }
 
   /// Finds the range of colours: the least of 1, 255 and 65535 that the first points do not exceed.
@@ -249,12 +317,11 @@ class XyzPoints : public VoxelSource {
            "points");
     std::array<double, kValues> values{};
     std::size_t found = 0, column = 0;
-    for (; found < columns_.size(); ++column) {
-      const std::string_view field = next_field(line);
-      if (field.empty()) break;
+    Fields fields(line);
+    for (std::string_view field; found < columns_.size() && fields.next(field); ++column) {
       for (std::size_t value = 0; value < columns_.size(); ++value) {
         if (columns_[value] != column) continue;
-        if (!parse_float(field, values[value]))
+        if (!parse_number(field, values[value]) && (value >= kCoordinates || !field.empty()))
           fail(number, "number " + std::to_string(column + 1) + ", " + in_quotes(field) +
                            ", is not a number");
         ++found;

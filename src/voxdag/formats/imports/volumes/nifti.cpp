@@ -208,15 +208,22 @@ class Parser {
       Vec3d& step = placement.steps[static_cast<std::size_t>(axis)];
       step = step * spacing[axis];
     }
-    if (integer(places_.sform, places_.code_bytes) > 0) {
+    const auto sform_step = [&](int axis) {
+      return Vec3d{real(places_.srow, axis), real(places_.srow, 4 + axis),
+                   real(places_.srow, 8 + axis)};
+    };
+    const bool has_qform = integer(places_.qform, places_.code_bytes) > 0;
+    // Some writers set the code of an sform that they leave 0.
+    const bool is_sform_zero =
+        sform_step(0) == Vec3d{} && sform_step(1) == Vec3d{} && sform_step(2) == Vec3d{};
+    if (integer(places_.sform, places_.code_bytes) > 0 && !(is_sform_zero && has_qform)) {
       // Three rows of a matrix whose last column is the place of voxel (0, 0, 0).
       placement.first_centre =
           Vec3d{real(places_.srow, 3), real(places_.srow, 7), real(places_.srow, 11)};
       for (int axis = 0; axis < 3; ++axis)
-        placement.steps[static_cast<std::size_t>(axis)] = {
-            real(places_.srow, axis), real(places_.srow, 4 + axis), real(places_.srow, 8 + axis)};
+        placement.steps[static_cast<std::size_t>(axis)] = sform_step(axis);
       placement.is_known = true;
-    } else if (integer(places_.qform, places_.code_bytes) > 0) {
+    } else if (has_qform) {
       placement.first_centre = vector(places_.qoffset);
       placement.is_known = true;
       // The quaternion's real part follows from the others. The sign of pixdim[0] mirrors z.

@@ -92,7 +92,7 @@ std::vector<std::string_view> words_of(std::string_view text) {
   return words;
 }
 
-struct Field {
+struct NrrdField {
   std::string value;
   std::uint64_t line;
 };
@@ -140,21 +140,23 @@ class NrrdHeaderParser {
     if (colon == std::string_view::npos) fail(number, "has no colon");
     if (line.substr(colon).starts_with(":=")) return;
     std::string name = lower(trimmed(line.substr(0, colon)));
-    if (name == "datafile") name = "data file";
-    if (name == "lineskip") name = "line skip";
-    if (name == "byteskip") name = "byte skip";
+    constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
+        {"datafile", "data file"}, {"lineskip", "line skip"}, {"byteskip", "byte skip"},
+        {"axismins", "axis mins"}, {"axismaxs", "axis maxs"}, {"centerings", "centers"}};
+    for (const auto& [other, usual] : kOtherNames)
+      if (name == other) name = usual;
     const std::string value(trimmed(line.substr(colon + 1)));
-    const auto [field, is_new] = fields_.try_emplace(name, Field{value, number});
+    const auto [field, is_new] = fields_.try_emplace(name, NrrdField{value, number});
     if (!is_new && field->second.value != value)
       fail(number, "the field " + name_in_quotes(name) + " is there twice, with other values");
   }
 
-  const Field* find(const std::string& name) const {
+  const NrrdField* find(const std::string& name) const {
     const auto field = fields_.find(name);
     return field == fields_.end() ? nullptr : &field->second;
   }
-  const Field& get(const std::string& name) const {
-    const Field* field = find(name);
+  const NrrdField& get(const std::string& name) const {
+    const NrrdField* field = find(name);
     if (field == nullptr) throw Error(path_.string(), "header", "has no field '" + name + "'");
     return *field;
   }
@@ -168,7 +170,7 @@ class NrrdHeaderParser {
     return value;
   }
   template <class T>
-  T number_in(const Field& field, std::string_view word) const {
+  T number_in(const NrrdField& field, std::string_view word) const {
     const std::optional<T> value = number_in<T>(trimmed(word));
     if (!value) fail(field.line, in_quotes(word) + " is not a number that is allowed here");
     return *value;
@@ -177,14 +179,14 @@ class NrrdHeaderParser {
   /// Returns the value of a table for a field.
   template <class Table>
   auto named_value(const std::string& name, const Table& table) const {
-    const Field& field = get(name);
+    const NrrdField& field = get(name);
     for (const auto& [key, value] : table)
       if (lower(field.value) == key) return value;
     fail(field.line, "the " + name + " " + in_quotes(field.value) + " is not supported");
   }
 
   /// Returns one word for each axis.
-  std::vector<std::string_view> words_of_axes(const Field& field) const {
+  std::vector<std::string_view> words_of_axes(const NrrdField& field) const {
     std::vector<std::string_view> words = words_of(field.value);
     if (words.size() != axes_)
       fail(field.line, "has " + std::to_string(words.size()) + " values for " +
@@ -195,19 +197,19 @@ class NrrdHeaderParser {
   void parse_shape() {
     DenseVolume& volume = header_.volume;
     volume.type = named_value("type", kNrrdTypes);
-    const Field& dimension = get("dimension");
+    const NrrdField& dimension = get("dimension");
     axes_ = number_in<std::uint64_t>(dimension, dimension.value);
     const char* const kAllowed =
         "the volume must have 3 axes, or 4 if the first one has 3 or 4 channels of uint8, or if "
         "the "
         "kind of the first or last one is list";
     if (axes_ != 3 && axes_ != 4) fail(dimension.line, kAllowed);
-    const Field& sizes = get("sizes");
+    const NrrdField& sizes = get("sizes");
     std::vector<std::uint64_t> numbers;
     for (const std::string_view word : words_of_axes(sizes))
       numbers.push_back(number_in<std::uint64_t>(sizes, word));
     std::vector<std::string> kinds;
-    if (const Field* field = find("kinds"))
+    if (const NrrdField* field = find("kinds"))
       for (const std::string_view word : words_of_axes(*field)) kinds.push_back(lower(word));
     is_list_last_ = axes_ == 4 && !kinds.empty() && kinds[3] == "list";
     if (axes_ == 4 && (is_list_last_ || (!kinds.empty() && kinds[0] == "list"))) {
@@ -235,14 +237,14 @@ class NrrdHeaderParser {
                                            std::pair<std::string_view, bool>{"big", true}});
     else if (header_.encoding == Encoding::kAscii)
       header_.volume.is_big_endian = std::endian::native == std::endian::big;
-    if (const Field* skip = find("line skip"))
+    if (const NrrdField* skip = find("line skip"))
       header_.line_skip = number_in<std::uint64_t>(*skip, skip->value);
-    if (const Field* skip = find("byte skip")) {
+    if (const NrrdField* skip = find("byte skip")) {
       header_.byte_skip = number_in<std::int64_t>(*skip, skip->value);
       if (header_.byte_skip < (header_.encoding == Encoding::kRaw ? -1 : 0))
         fail(skip->line, "the byte skip must be 0 or greater, or -1 for raw data");
     }
-    if (const Field* file = find("data file")) {
+    if (const NrrdField* file = find("data file")) {
       std::string name = file->value;
       // Teem writes "./name" for a file beside the header.
       if (name.starts_with("./")) name.erase(0, 2);
@@ -259,7 +261,7 @@ class NrrdHeaderParser {
 
   void parse_spacing() {
     VolumePlacement& placement = header_.placement;
-    if (const Field* spacings = find("spacings")) {
+    if (const NrrdField* spacings = find("spacings")) {
       const auto words = words_of_axes(*spacings);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto value = number_in<double>(*spacings, words[first_axis() + axis]);
@@ -272,7 +274,7 @@ class NrrdHeaderParser {
         placement.is_known = true;
       }
     }
-    if (const Field* directions = find("space directions")) {
+    if (const NrrdField* directions = find("space directions")) {
       const auto words = words_of_axes(*directions);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::string_view word = words[first_axis() + axis];
@@ -281,17 +283,45 @@ class NrrdHeaderParser {
         placement.is_known = true;
       }
     }
-    if (const Field* origin = find("space origin")) {
+    if (const NrrdField* origin = find("space origin")) {
       placement.first_centre = vector_in(*origin, origin->value);
       placement.is_known = true;
+    } else if (const NrrdField* mins = find("axis mins");
+               mins != nullptr && !find("space directions")) {
+      parse_axis_mins(*mins);
     }
+  }
+
+  /// Reads where the axes begin: at the centre of the first voxel, or, as usual, at its border.
+  /// "axis maxs" gives the spacing of the axes if nothing else does.
+  void parse_axis_mins(const NrrdField& mins) {
+    VolumePlacement& placement = header_.placement;
+    const NrrdField *const maxs = find("axis maxs"), *const centers = find("centers");
+    Vec3d first;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int axis = static_cast<int>(i);
+      const auto word = [&](const NrrdField& field) {
+        return words_of_axes(field)[first_axis() + i];
+      };
+      const bool is_node = centers != nullptr && lower(word(*centers)) == "node";
+      double& step = placement.steps[i][axis];
+      const auto min = number_in<double>(mins, word(mins));
+      if (maxs != nullptr && find("spacings") == nullptr) {
+        const auto voxels = static_cast<double>(header_.volume.size[i]) - (is_node ? 1 : 0);
+        const double spacing = (number_in<double>(*maxs, word(*maxs)) - min) / voxels;
+        if (spacing > 0 && std::isfinite(spacing)) step = spacing;
+      }
+      placement.is_known |= !std::isnan(min);
+      first[axis] = (std::isnan(min) ? 0 : min) + (is_node && !std::isnan(min) ? 0 : step / 2);
+    }
+    if (placement.is_known) placement.first_centre = first;
   }
 
   /// Returns the number of the volume's x axis.
   std::size_t first_axis() const { return axes_ == 4 && !is_list_last_ ? 1 : 0; }
 
   /// Reads "(x,y,z)".
-  Vec3d vector_in(const Field& field, std::string_view word) const {
+  Vec3d vector_in(const NrrdField& field, std::string_view word) const {
     Vec3d vector;
     if (word.size() >= 2 && word.front() == '(' && word.back() == ')') {
       word = word.substr(1, word.size() - 2);
@@ -308,7 +338,7 @@ class NrrdHeaderParser {
 
   const std::filesystem::path& path_;
   std::string_view text_;
-  std::map<std::string, Field> fields_;
+  std::map<std::string, NrrdField> fields_;
   NrrdHeader header_;
   std::uint64_t axes_ = 0;
   bool is_list_last_ = false;  ///< The last axis counts layers.
