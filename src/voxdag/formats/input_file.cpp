@@ -18,6 +18,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/io/resolved_output.hpp"
+#include "voxdag/core/io/unpacked_name.hpp"
 #include "voxdag/formats/imports/volumes/gzip_stream.hpp"
 
 namespace voxdag {
@@ -156,8 +157,7 @@ InputFile::InputFile(const fs::path& given, Work work) : path_(given), name_(giv
   const std::string_view magic(head.data(), head.size());
   const bool is_gzip = magic.starts_with(kGzip);
   if (!is_gzip && magic != kZstd) return;
-  const std::string ending = given.extension().string();
-  if (ending == ".gz" || ending == ".zst") name_ = fs::path(given).replace_extension();
+  name_ = unpacked_name(given);
   const MappedFile packed(input, given, MappedFile::Access::kSequential);
   MemoryFile memory(given, work);
   is_gzip ? unpack_gzip(given, packed.text(), memory) : unpack_zstd(given, packed.text(), memory);
