@@ -7,10 +7,10 @@
 #include <string_view>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/float_origin.hpp"
 #include "voxdag/core/io/unpacked_name.hpp"
 #include "voxdag/core/number_text.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/mesh/place_vertices.hpp"
 
 namespace voxdag {
 namespace {
@@ -149,21 +149,9 @@ bool InputTransform::keeps_axes() const {
 
 void move_mesh(MeshWithAppearance& source, const InputTransform& transform, Work work) {
   if (transform.is_identity()) return;
-  Mesh& mesh = source.mesh;
-  Box3f bounds = Box3f::empty();
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    work.poll_seldom(t);
-    for (const std::uint32_t vertex : mesh.triangles[t]) {
-      const Vec3f moved = transform.vertex(mesh.position(vertex), {});
-      if (!is_finite(moved))
-        throw Error("scaled and moved like this, vertices leave the range of float");
-      bounds.extend(moved);
-    }
-  }
-  const Vec3d origin = float_origin({static_cast<Vec3d>(bounds.lo), static_cast<Vec3d>(bounds.hi)});
-  polled_for(mesh.vertices.size(), 4096, work, "move",
-             [&](std::size_t i) { mesh.vertices[i] = transform.vertex(mesh.position(i), origin); });
-  mesh.origin = origin;
+  const Mesh& mesh = source.mesh;
+  place_vertices(
+      source.mesh, [&](std::size_t i) { return transform.point(mesh.position(i)); }, work);
   Appearance& appearance = source.appearance;
   polled_for(appearance.normals.size(), 4096, work, "move", [&](std::size_t i) {
     appearance.normals[i] =
