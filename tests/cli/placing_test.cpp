@@ -164,12 +164,17 @@ TEST_F(Placing, TheInsideHasTheColourOfTheNearestSurface) {
     arguments.insert(arguments.begin(),
                      {path("b.obj"), "-r", "16", "--solid", "--color", "--color-bound", "0"});
     EXPECT_EQ(build("b.vdag", arguments).at("voxels"), 4096);
+    const ProcessResult check = run_voxdag({"verify", path("b.vdag"), "--mesh", path("b.obj")});
+    EXPECT_EQ(check.status, 0) << check.err;
+    EXPECT_NE(check.out.find("colours"), std::string::npos) << check.out;
     run({"export", path("b.vdag"), "-o", path("b.ply")});
     const std::string ply = read_text(path("b.ply"));
     return ply.substr(ply.find("end_header"));
   };
   EXPECT_EQ(colors({}).size(), colors({"--inside-color", "1,2,3"}).size());
   EXPECT_NE(colors({}), colors({"--inside-color", "1,2,3"}));
+  write_text(path("b.mtl"), "newmtl red\nKd 1 1 0\nnewmtl blue\nKd 0 0 1\n");
+  EXPECT_EQ(run_voxdag({"verify", path("b.vdag"), "--mesh", path("b.obj")}).status, 1);
 }
 
 }  // namespace
