@@ -122,6 +122,27 @@ TEST_F(Placing, SeveralFilesShareAGridAndHaveIds) {
                  2, "would overwrite");
 }
 
+TEST_F(Placing, FilesWithOneNameAreNamedByTheirPaths) {
+  for (const std::string folder : {"a", "b"}) {
+    std::filesystem::create_directory(path(folder));
+    write_text(path(folder + "/pot.obj"), box({0, 0, 0}, {1, 1, 1}));
+  }
+  write_text(path("lid.obj"), box({0, 0, 1}, {1, 1, 2}));
+  const Json info = build("p.vdag", {path("a/pot.obj"), path("b/pot.obj"), path("lid.obj"), "-r",
+                                     "8", "--ids", "file"});
+  EXPECT_EQ(info.at("attributes").at("material").at("names"),
+            Json::array({path("a/pot.obj"), path("b/pot.obj"), "lid.obj"}));
+}
+
+TEST_F(Placing, InputsThatTellTooLittleAreRefused) {
+  std::filesystem::create_directory(path("none"));
+  expect_failure(run_voxdag({"build", path("none"), "-r", "8", "-o", path("n.vdag")}), 2,
+                 "the folder " + path("none") + " has no file that ends in .obj, .ply,");
+  for (const auto& [option, value] : {std::pair("--up", "z"), std::pair("--unit", "mm")})
+    expect_failure(run_voxdag({"build", "-", option, value, "-r", "8", "-o", path("n.vdag")}), 2,
+                   "standard input has no name that tells its up axis and its unit");
+}
+
 TEST_F(Placing, SeveralCloudsAreOne) {
   std::filesystem::create_directory(path("tiles"));
   write_text(path("tiles/a.xyz"), "0 0 0\n1 0 0\n");
@@ -143,12 +164,17 @@ TEST_F(Placing, TheInsideHasTheColourOfTheNearestSurface) {
     arguments.insert(arguments.begin(),
                      {path("b.obj"), "-r", "16", "--solid", "--color", "--color-bound", "0"});
     EXPECT_EQ(build("b.vdag", arguments).at("voxels"), 4096);
+    const ProcessResult check = run_voxdag({"verify", path("b.vdag"), "--mesh", path("b.obj")});
+    EXPECT_EQ(check.status, 0) << check.err;
+    EXPECT_NE(check.out.find("colours"), std::string::npos) << check.out;
     run({"export", path("b.vdag"), "-o", path("b.ply")});
     const std::string ply = read_text(path("b.ply"));
     return ply.substr(ply.find("end_header"));
   };
   EXPECT_EQ(colors({}).size(), colors({"--inside-color", "1,2,3"}).size());
   EXPECT_NE(colors({}), colors({"--inside-color", "1,2,3"}));
+  write_text(path("b.mtl"), "newmtl red\nKd 1 1 0\nnewmtl blue\nKd 0 0 1\n");
+  EXPECT_EQ(run_voxdag({"verify", path("b.vdag"), "--mesh", path("b.obj")}).status, 1);
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ TEST(InputFile, MeshesMayBeCompressed) {
   write_text(dir / "a.obj.zst", zstd(kTriangle));
   write_text(dir / "twice.obj.zst", zstd(kTriangle.substr(0, 9)) + zstd(kTriangle.substr(9)));
   write_text(dir / "b.obj", gzip(kTriangle));
-  for (const char* name : {"a.obj.gz", "a.obj.zst", "twice.obj.zst", "b.obj"})
+  write_text(dir / "C.OBJ.GZ", gzip(kTriangle));
+  for (const char* name : {"a.obj.gz", "a.obj.zst", "twice.obj.zst", "b.obj", "C.OBJ.GZ"})
     EXPECT_EQ(read_mesh(dir / name).triangles.size(), 1u) << name;
 }
 

@@ -20,6 +20,8 @@ TEST(InputTransform, TheUpAxisOfTheFormatIsTurned) {
   EXPECT_TRUE(InputTransform(up("z"), custom_of("A.STL")).is_identity());
   EXPECT_TRUE(InputTransform(up("y"), custom_of("a.obj")).is_identity());
   EXPECT_EQ(InputTransform(up("y"), custom_of("a.las.gz")).point({1, 2, 3}), (Vec3d{1, 3, -2}));
+  EXPECT_TRUE(InputTransform(up("z"), custom_of("A.STL.GZ")).is_identity());
+  EXPECT_TRUE(InputTransform(up("y"), custom_of("-", "obj")).is_identity());
 }
 
 TEST(InputTransform, TheInputsAxisCanBeGiven) {

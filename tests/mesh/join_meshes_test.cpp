@@ -49,6 +49,18 @@ TEST(JoinMeshes, EachFileKeepsItsTrianglesMaterialsAndImages) {
   EXPECT_EQ(memory.used(), bytes(a));
 }
 
+TEST(JoinMeshes, MeshesFarFromZeroAreMeasuredFromOneOrigin) {
+  MeshWithAppearance a = triangle(0, false), b = triangle(0.25, false);
+  a.mesh.origin = {4649776, 0, 0};
+  b.mesh.origin = {4649777, 0, 0};
+  name_parts(a, "a.obj", nullptr);
+  name_parts(b, "b.obj", nullptr);
+  append_mesh(a, std::move(b), nullptr);
+  EXPECT_EQ(a.mesh.origin, (Vec3d{4649776, 0, 0}));
+  EXPECT_EQ(a.mesh.position(0), (Vec3d{4649776, 0, 0}));
+  EXPECT_EQ(a.mesh.position(4), (Vec3d{4649777.25, 1, 0}));
+}
+
 TEST(JoinMeshes, IdsFollowTheRuns) {
   const std::vector<ObjectRun> runs = {{0, 2}, {1, 0}, {1, 7}, {3, 2}};
   const auto ids = ids_of_runs(runs, 5, nullptr);

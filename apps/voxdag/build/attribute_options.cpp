@@ -3,9 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <stdexcept>
 
+#include "cli/input_files.hpp"
 #include "cli/parse.hpp"
 #include "cli/usage_error.hpp"
 #include "voxdag/builders/attributes/inside_attributes.hpp"
@@ -16,7 +16,7 @@ namespace voxdag::cli {
 
 namespace {
 
-/// Returns whether the text asks to cut.
+/// Parses the value of --alpha. Returns whether it is "cut".
 bool parse_cut(const std::string& text) {
   if (text != "cut" && text != "keep")
     throw std::invalid_argument(fmt::format("\"{}\" is neither cut nor keep", text));
@@ -38,7 +38,7 @@ IdKind parse_ids(const std::string& text) {
   if (text == "material") return IdKind::kMaterial;
   if (text == "object") return IdKind::kObject;
   if (text == "file") return IdKind::kFile;
-  throw std::invalid_argument("\"" + text + "\" is not file, object or material");
+  throw std::invalid_argument("\"" + text + "\" is none of file, object and material");
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
   command
       .flag("--material-ids", options.materials,
             "Also store the material of all cells, as its number in the mesh: the one with the "
-            "largest area in the cell. A mesh without materials has the ids of its objects")
+            "largest area in the cell. If the mesh has no materials: its objects")
       .in_group(group);
   command
       .parsed(
@@ -66,8 +66,9 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
             return parse_ids(text);
           },
           "file|object|material",
-          "Store such ids, in place of materials: files in the order of the command line; objects "
-          "(`o` and `g` of OBJ, nodes of glTF) in that of the file. `voxdag info` shows the names")
+          "Store the ids of files, objects or materials. Files are numbered in the order of the "
+          "command line, objects (`o` and `g` of OBJ, nodes of glTF) in that of the file. `voxdag "
+          "info` shows the names")
       .in_group(group);
   command
       .parsed(
@@ -78,10 +79,11 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
       .only_if(is_wanted, "without --color, --normal and --material-ids")
       .in_group(group);
   command
-      .parsed("--alpha", arguments.cut, parse_cut, "cut|keep",
-              "Voxels whose surface is transparent, by textures, materials or vertex colours. cut: "
-              "they are not set; keep: they are set, and have the nearest visible colour (default: "
-              "cut with --color, else keep). An ESVO never has them")
+      .parsed(
+          "--alpha", arguments.cut, parse_cut, "cut|keep",
+          "Voxels whose whole surface is transparent, by textures, materials or vertex colours. "
+          "cut: leave them empty; keep: set them, with the nearest visible colour (default: cut "
+          "with --color, else keep). An ESVO never has them")
       .in_group(group);
   command
       .number("--color-bound", options.color_bound, NumberRange::from(0, 1), "DIFFERENCE",
@@ -126,10 +128,8 @@ NamedIds named_ids(IdKind kind, const JoinedMeshes& meshes, const std::vector<st
     if (kind == IdKind::kObject && !mesh.objects.empty()) {
       result.names = mesh.objects;
       result.ids = ids_of_runs(mesh.object_runs, mesh.triangles.size(), memory);
-    } else {  // A file that names no objects is one.
-      result.names.clear();
-      for (const std::string& file : files)
-        result.names.push_back(std::filesystem::path(file).filename().string());
+    } else {  // A file without objects is one object.
+      result.names = distinct_names(files);
       result.ids = ids_of_runs(meshes.files, mesh.triangles.size(), memory);
     }
   }

@@ -12,15 +12,16 @@
 
 namespace voxdag::cli {
 
-/// What --material-ids stores: by default materials, or objects if the mesh has no materials.
+/// The kind of ids that --material-ids stores. kDefault: materials, or objects if the mesh has no
+/// materials.
 enum class IdKind { kDefault, kMaterial, kObject, kFile };
 
 struct AttributeArguments {
   AttributeOptions options;
   IdKind ids = IdKind::kDefault;
-  std::optional<Value8> inside_color;  ///< Of solids, sRGB encoded; empty: that of the surface.
+  std::optional<Value8> inside_color;  ///< Inside of solids, sRGB. Empty: as the nearest surface.
   std::optional<int> levels;           ///< log2 of --attribute-resolution.
-  std::optional<bool> cut;             ///< Whether --alpha is `cut`.
+  std::optional<bool> cut;             ///< Whether --alpha is "cut"; empty: not given.
 
   bool needs_shading() const { return options.colors || options.normals; }
   bool is_wanted() const { return needs_shading() || options.materials; }
@@ -34,13 +35,14 @@ struct AttributeArguments {
 /// many bytes.
 inline constexpr std::uint64_t kAttributeBudget = std::uint64_t{4} << 30;
 
-/// `is_solid` tells, once all options are parsed, whether the build fills the inside.
+/// Adds the options. They call `is_solid` once all options are parsed: it returns whether the build
+/// fills the inside.
 void add_attribute_options(const Command& command, AttributeArguments& arguments,
                            const std::string& group, const std::function<bool()>& is_solid);
 
-/// The ids of a mesh's triangles, and the names behind them.
+/// The ids of a mesh's triangles and their names.
 struct NamedIds {
-  CountedVector<std::uint32_t> ids;  ///< Of each triangle; empty if they are those of materials.
+  CountedVector<std::uint32_t> ids;  ///< One for each triangle; empty: Mesh::triangle_materials.
   std::vector<std::string> names;
   const char* kind = "material";  ///< "material", "object" or "file".
 
@@ -48,8 +50,8 @@ struct NamedIds {
     return ids.empty() ? TriangleIds{} : TriangleIds{ids, static_cast<std::uint32_t>(names.size())};
   }
 };
-/// Returns the ids of the triangles of `files`. Throws Error if there are none or too many, and
-/// OverMemory.
+/// Returns the ids of the triangles of `meshes`, which were read from `files`. Throws Error if
+/// there are no ids or more than kMaxMaterials, and OverMemory.
 NamedIds named_ids(IdKind kind, const JoinedMeshes& meshes, const std::vector<std::string>& files,
                    MemoryBudget* memory);
 

@@ -6,6 +6,7 @@
 
 #include "build/build_arguments.hpp"
 #include "cli/commands.hpp"
+#include "cli/input_files.hpp"
 #include "cli/parse.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 
@@ -23,7 +24,7 @@ bool parse_structure(const std::string& text) {
   return text == "esvo";
 }
 
-/// Returns whether the text names the rule of centres.
+/// Parses the value of --rule. Returns whether it is "centre".
 bool parse_voxel_rule(const std::string& text) {
   if (text == "cover") return false;
   if (text == "centre" || text == "center") return true;
@@ -47,8 +48,10 @@ void add_grid_options(const Command& command, BuildArguments& arguments) {
       "Box that the grid holds: the grid, a cube, starts at its lower corner (default: the "
       "mesh's bounding box)");
   command
-      .parsed("--origin", arguments.grid.origin, parse_vec3, "X,Y,Z",
-              "Lower corner of the grid, which ends with the mesh")
+      .parsed(
+          "--origin", arguments.grid.origin, parse_vec3, "X,Y,Z",
+          "Lower corner of the grid (default: that of the mesh); -r counts the voxels from there "
+          "to the upper corner of the mesh")
       .only_if([&arguments] { return !arguments.grid.bounds; }, "with --bounds");
   add_margin_options(command, arguments.grid);
   add_transform_options(command, arguments.access.transform);
@@ -121,8 +124,8 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
        arguments.method != BuildMethod::kHashConsed))
     throw UsageError(
         "--work and --parts build the surface's voxels by --method hash: not with --solid, "
-        "--color, "
-        "--normal, --material-ids, --alpha cut, --compact, several meshes or another method");
+        "--color, --normal, --material-ids, --alpha cut, --compact, several meshes or another "
+        "method");
   if (arguments.solid) {
     if (arguments.attributes.cut.value_or(false))
       throw UsageError("--solid fills the whole surface: not with --alpha cut");
@@ -132,6 +135,15 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
   check_distinct(arguments.access.outputs, session);
   if (arguments.grid.resolution.has_value() == arguments.grid.voxel_size.has_value())
     throw UsageError("give exactly one of -r/--resolution and --voxel-size");
+  const TransformRequest& transform = arguments.access.transform;
+  const auto needs_custom = [](const std::string& text) {
+    return !text.empty() && text.find(':') == text.npos;
+  };
+  if (arguments.meshes.front() == "-" && arguments.access.format.empty() &&
+      (needs_custom(transform.up) || needs_custom(transform.unit)))
+    throw UsageError(
+        "standard input has no name that tells its up axis and its unit: give --format, or "
+        "--up FROM:TO and --unit FROM:TO");
   if (!arguments.grid.resolution) return;
   const int levels = levels_of(*arguments.grid.resolution);
   arguments.esvo.bake.check_levels(levels);
@@ -164,9 +176,8 @@ void add_build_command(const Command& program, Session& session) {
   command
       .repeated(
           "mesh", arguments->meshes, [](const std::string& text) { return text; }, "MESH...",
-          "The mesh, several, a folder of them or a pattern: OBJ, PLY, STL, OFF, glTF/GLB, 3MF, "
-          "COLLADA, or another format if voxdag was built with assimp; also compressed (.gz, "
-          ".zst). "
+          "Meshes, folders of meshes, or patterns: OBJ, PLY, STL, OFF, glTF/GLB, 3MF, COLLADA, or "
+          "another format if voxdag was built with assimp; also compressed (.gz, .zst). "
           "-: standard input")
       .required();
   command.text("-o,--output", arguments->output, "FILE", "The file to write").required();
@@ -191,9 +202,10 @@ void add_build_command(const Command& program, Session& session) {
           "through empty voxels connects with the sides of the grid")
       .in_group(kDagOptions);
   command
-      .parsed("--rule", arguments->by_centre, parse_voxel_rule, "cover|centre",
-              "For --solid parity and winding: cover: the voxels that the body meets (default); "
-              "centre: those whose centre is inside")
+      .parsed(
+          "--rule", arguments->by_centre, parse_voxel_rule, "cover|centre",
+          "Voxels that --solid parity and winding set. cover: those that the body meets; centre: "
+          "those whose centre is inside (default: cover)")
       .only_if(
           [arguments = arguments.get()] {
             return arguments->solid && *arguments->solid != SolidRule::kFlood;

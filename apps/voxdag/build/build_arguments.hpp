@@ -25,7 +25,7 @@ struct EsvoArguments {
 };
 
 struct BuildArguments {
-  std::vector<std::string> meshes;  ///< The files.
+  std::vector<std::string> meshes;  ///< Files: folders and patterns are expanded.
   std::string output;
   MeshAccess access;
   GridRequest grid;
@@ -41,6 +41,11 @@ struct BuildArguments {
   std::string work_folder;  ///< For DAGs: where the work of many processes lies; empty: none.
   std::uint64_t parts = 0;  ///< For DAGs: least number of parts; 0: not given.
   EsvoArguments esvo;
+
+  /// Returns the line of a summary that says how the meshes were moved; empty if they were not.
+  std::string transform_line() const {
+    return transform_table(access.transform, custom_of(meshes.front(), access.format));
+  }
 };
 
 /// Builds a DAG from the mesh files, writes it, and prints the summary.

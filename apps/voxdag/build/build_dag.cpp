@@ -104,7 +104,7 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
 
   DagReport report;
   report.metadata.grid = grid_for(mesh, arguments.grid);
-  warn_of_rounding(session.subject, mesh, report.metadata.grid, session);
+  warn_of_rounding(session.subject, mesh, report.metadata.grid.voxel_size, session);
   arguments.attributes.check_levels(report.metadata.grid.levels);
   report.metadata.source = {names_of(arguments.meshes), mesh.vertices.size(),
                             mesh.triangles.size()};
@@ -189,7 +189,7 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
     fmt::print("{}", json_text(json_of(report, result.report, seconds)));
   } else if (!session.quiet) {
     fmt::print("{}: {}\n{}{}", arguments.output, human_bytes(report.file_bytes),
-               transform_table(access.transform, arguments.meshes), table_of(report, seconds));
+               arguments.transform_line(), table_of(report, seconds));
     if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
   }
 }

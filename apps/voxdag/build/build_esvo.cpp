@@ -82,10 +82,10 @@ void print_summary(const EsvoReport& report, const EsvoSeconds& seconds,
       "  time          {}: read {}, textures {}, build and write {}\n"
       "  rate          {} voxels/s\n"
       "  peak memory   {}\n",
-      arguments.output, human_bytes(report.file_bytes),
-      transform_table(arguments.access.transform, arguments.meshes), esvo_table(report),
-      human_seconds(seconds.total()), human_seconds(seconds.read), human_seconds(seconds.textures),
-      human_seconds(seconds.build), human_count(rate), human_bytes(peak_resident_bytes()));
+      arguments.output, human_bytes(report.file_bytes), arguments.transform_line(),
+      esvo_table(report), human_seconds(seconds.total()), human_seconds(seconds.read),
+      human_seconds(seconds.textures), human_seconds(seconds.build), human_count(rate),
+      human_bytes(peak_resident_bytes()));
   if (arguments.stats) fmt::print("\n{}", esvo_level_table(report));
 }
 
@@ -118,7 +118,7 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   GridRequest grid = arguments.grid;
   if (displaced && !grid.bounds) grid.bounds = displaced_bounds(*displaced, source.mesh);
   metadata.grid = grid_for(source.mesh, grid);
-  warn_of_rounding(session.subject, source.mesh, metadata.grid, session);
+  warn_of_rounding(session.subject, source.mesh, metadata.grid.voxel_size, session);
   esvo.bake.check_levels(metadata.grid.levels);
   metadata.source = {names_of(arguments.meshes), source.mesh.vertices.size(),
                      source.mesh.triangles.size()};

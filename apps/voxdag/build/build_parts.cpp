@@ -100,6 +100,7 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
   if (parts.bad_triangles > 0)
     warnings.push_back(bad_triangles_warning(session.subject, parts.bad_triangles));
   print_warnings(warnings, session);
+  warn_of_rounding(session.subject, parts.rounding, parts.metadata.grid.voxel_size, session);
 
   const DagReport report = report_of_file(parts, arguments.output);
   warn_if_empty(report.metadata.counts.voxels, arguments.output, session);
@@ -108,8 +109,7 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
     fmt::print("{}", json_text(json_of(report, parts, process.count())));
   } else if (!session.quiet) {
     fmt::print("{}: {}\n{}{}", arguments.output, human_bytes(report.file_bytes),
-               transform_table(job.transform, arguments.meshes),
-               table_of(report, parts, process.count()));
+               arguments.transform_line(), table_of(report, parts, process.count()));
     if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
   }
 }

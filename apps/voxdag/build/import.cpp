@@ -8,6 +8,7 @@
 
 #include "build/placing_options.hpp"
 #include "cli/commands.hpp"
+#include "cli/input_files.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
 #include "cli/stopwatch.hpp"
@@ -55,7 +56,8 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
       print_warnings(warnings_of(*source, file), session);
       check_grid_options(*source, options);
       sources.push_back(
-          moved_source(std::move(source), InputTransform(arguments.transform, custom_of(file))));
+          moved_source(std::move(source),
+                       InputTransform(arguments.transform, custom_of(file, arguments.format))));
     });
   return with_file_name(session.subject, [&] {
     return import_model(*joined_source(std::move(sources)), options, names_of(arguments.files),
@@ -67,12 +69,11 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
 std::vector<std::string> files_of(const std::vector<std::string>& arguments) {
   std::vector<std::string> files;
   for (const std::string& argument : arguments) {
-    const bool has_slices = expand_inputs({argument}, {".png"}).front() != argument &&
-                            std::filesystem::is_directory(argument);
     const std::vector<std::string> of_argument =
-        has_slices ? std::vector{argument}
-                   : expand_inputs({argument}, {".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb",
-                                                ".ply", ".las", ".pcd", ".npy"});
+        !files_in(argument, {".png"}).empty()
+            ? std::vector{argument}
+            : expand_inputs({argument}, {".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb", ".ply",
+                                         ".las", ".pcd", ".npy"});
     files.insert(files.end(), of_argument.begin(), of_argument.end());
   }
   return files;
@@ -117,7 +118,8 @@ void import(const ImportArguments& arguments, Session& session) {
             : "",
         with_commas(counts.voxels), with_commas(model.grid().resolution()),
         human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
-        human_seconds(watch.since_start()), transform_table(arguments.transform, arguments.files));
+        human_seconds(watch.since_start()),
+        transform_table(arguments.transform, custom_of(arguments.files.front(), arguments.format)));
   }
 }
 

@@ -2,12 +2,12 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
+#include "cli/input_files.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/float_origin.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/mesh/join_meshes.hpp"
@@ -43,7 +43,8 @@ MeshWithAppearance read_and_check(const std::string& file, bool with_appearance,
   print_warnings(result.warnings, session);
   result.warnings.clear();
   with_file_name(file, [&] {
-    move_mesh(result, InputTransform(access.transform, custom_of(file)), options.work);
+    move_mesh(result, InputTransform(access.transform, custom_of(file, access.format)),
+              options.work);
   });
   return result;
 }
@@ -53,8 +54,8 @@ MeshWithAppearance read_and_check(const std::string& file, bool with_appearance,
 void add_mesh_access_options(const Command& command, MeshAccess& access, const Option* mesh) {
   const Option format = command.text(
       "--format", access.format, "EXT",
-      "Read the mesh as if its name ended in .EXT: for standard input of formats that do not tell "
-      "themselves, such as OBJ");
+      "Read the mesh as if its name ended in .EXT. Standard input needs it for formats that have "
+      "no signature, such as OBJ");
   const Option outside = command.flag(
       "--allow-outside", access.allow_outside,
       "Let the mesh name textures, buffers and material libraries outside its own folder");
@@ -78,10 +79,10 @@ MeshWithAppearance read_mesh_file_with_appearance(const std::string& file, const
 JoinedMeshes read_mesh_files(const std::vector<std::string>& files, bool with_appearance,
                              const MeshAccess& access, Session& session) {
   JoinedMeshes joined;
+  const std::vector<std::string> names = distinct_names(files);
   for (std::uint32_t i = 0; i < files.size(); ++i) {
     MeshWithAppearance read = read_and_check(files[i], with_appearance, access, session);
-    if (files.size() > 1)
-      name_parts(read, std::filesystem::path(files[i]).filename().string(), access.memory);
+    if (files.size() > 1) name_parts(read, names[i], access.memory);
     joined.files.push_back({joined.source.mesh.triangles.size(), i});
     if (i == 0)
       joined.source = std::move(read);
@@ -91,18 +92,18 @@ JoinedMeshes read_mesh_files(const std::vector<std::string>& files, bool with_ap
   return joined;
 }
 
-void warn_of_rounding(const std::string& file, const Mesh& mesh, const Grid& grid,
+void warn_of_rounding(const std::string& file, const Mesh& mesh, double voxel_size,
                       Session& session) {
-  const Box3d bounds = referenced_bounds(mesh);
-  double farthest = 0;
-  for (const Vec3d corner : {bounds.lo - mesh.origin, bounds.hi - mesh.origin})
-    for (int axis = 0; axis < 3; ++axis) farthest = std::max(farthest, std::abs(corner[axis]));
-  const double rounding = farthest * 0x1p-24;
-  if (rounding <= grid.voxel_size / 8) return;
+  warn_of_rounding(file, float_rounding(referenced_bounds(mesh), mesh.origin), voxel_size, session);
+}
+
+void warn_of_rounding(const std::string& file, double rounding, double voxel_size,
+                      Session& session) {
+  if (rounding <= voxel_size / 8) return;
   print_warnings(
       {fmt::format("{}: vertices, in float32, may be off by {:.2g}, and a voxel has {:.2g}: "
                    "parts of the mesh are far from each other or from 0",
-                   file, rounding, grid.voxel_size)},
+                   file, rounding, voxel_size)},
       session);
 }
 

@@ -48,16 +48,18 @@ MeshWithAppearance read_mesh_file_with_appearance(const std::string& file, const
 /// The meshes of several files in one.
 struct JoinedMeshes {
   MeshWithAppearance source;
-  std::vector<ObjectRun> files;  ///< The runs of triangles of each file.
+  std::vector<ObjectRun> files;  ///< The triangles of each file; ObjectRun::object is its index.
 };
-/// Reads meshes, with their appearance if `with_appearance`, and joins them. Their materials and
-/// objects are named after the file where it has several.
+/// Reads meshes, with their appearance if `with_appearance`, and joins them with append_mesh(). If
+/// there are several files, name_parts() gives distinct_names() to their materials and objects.
 JoinedMeshes read_mesh_files(const std::vector<std::string>& files, bool with_appearance,
                              const MeshAccess& access, Session& session);
 
-/// Warns if the vertices, which are float32 from Mesh::origin, may be off by more than an eighth of
-/// a voxel: the mesh has parts that are far from each other, and small voxels.
-void warn_of_rounding(const std::string& file, const Mesh& mesh, const Grid& grid,
+/// Warns if float32 rounds the vertices of the mesh by more than an eighth of a voxel: its parts
+/// are far from each other, and the voxels small. `rounding` is float_rounding() of the mesh.
+void warn_of_rounding(const std::string& file, double rounding, double voxel_size,
+                      Session& session);
+void warn_of_rounding(const std::string& file, const Mesh& mesh, double voxel_size,
                       Session& session);
 
 /// Throws Error(file, ...) unless the voxels were built from this mesh, which was read from `file`.

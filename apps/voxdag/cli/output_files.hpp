@@ -22,8 +22,8 @@ void check_distinct(const std::vector<OutputFile>& outputs, const Session& sessi
 void check_not_overwritten(const std::vector<OutputFile>& outputs,
                            std::span<const std::filesystem::path> files, const std::string& namer);
 
-/// Returns a path that writes to the standard output, for "-". What the program prints from now on,
-/// such as the summary, goes to stderr.
+/// Returns a path that writes to the standard output, for "-". From then on, the program prints to
+/// stderr, for example its summary.
 std::string standard_output();
 
 /// Returns the canonical path of the file that receives output to `path`.

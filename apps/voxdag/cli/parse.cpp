@@ -121,6 +121,16 @@ double parse_positive(const std::string& text) {
   return value;
 }
 
+std::int64_t parse_resolution(const std::string& text) {
+  constexpr std::int64_t kMax = std::int64_t{1} << kMaxLevels;
+  const bool kilo = text.ends_with('K') || text.ends_with('k');
+  const auto n = read_whole_number(std::string_view(text).substr(0, text.size() - (kilo ? 1 : 0)));
+  if (!n || *n < 1 || *n > (kilo ? kMax / 1024 : kMax))
+    throw std::invalid_argument(
+        fmt::format("\"{}\" is not a whole number from 1 to {}", text, kMax));
+  return kilo ? *n * 1024 : *n;
+}
+
 int parse_levels(const std::string& text) {
   constexpr std::uint64_t kMin = 1u << kMinLevels, kMax = 1u << kMaxLevels;
   const bool kilo = text.ends_with('K') || text.ends_with('k');

@@ -36,6 +36,8 @@ int parse_axis(const std::string& text);
 double parse_finite(const std::string& text);
 /// Parses a finite number above zero.
 double parse_positive(const std::string& text);
+/// Parses the number of voxels along a side, "1000" or "8K": 1 to 2^kMaxLevels.
+std::int64_t parse_resolution(const std::string& text);
 /// Parses a power of two, "8192" or "8K", and returns its log2.
 int parse_levels(const std::string& text);
 /// Parses a size in bytes: "512M", "16GiB", "1000000".

@@ -108,9 +108,11 @@ VerifyCheck value_check(const char* name, const ValueCheck& values, double bound
   return check;
 }
 
-/// Compares the attributes with the mesh. Returns no checks if the file has no attributes.
+/// Compares the attributes with the mesh. `cover` is the DAG of the mesh if the file has a solid,
+/// else null. Returns no checks if the file has no attributes.
 std::vector<VerifyCheck> attribute_checks(const VerifyArguments& arguments, const DagModel& file,
-                                          const JoinedMeshes& meshes, Session& session) {
+                                          const JoinedMeshes& meshes, const SvdagView* cover,
+                                          Session& session) {
   const DagAttributesView attributes = file.attributes();
   if (attributes.is_empty()) return {};
   const MeshWithAppearance& source = meshes.source;
@@ -125,7 +127,7 @@ std::vector<VerifyCheck> attribute_checks(const VerifyArguments& arguments, cons
   const SurfaceShading shading(source.mesh, source.appearance, nullptr, &session.progress);
   const AttributeCheck found =
       check_attributes(source.mesh, file.grid(), {file.view(), attributes}, shading,
-                       arguments.samples, arguments.seed, &session.progress, ids.view());
+                       arguments.samples, arguments.seed, &session.progress, ids.view(), cover);
   const AttributesMetadata& stored = file.metadata().attributes;
   std::vector<VerifyCheck> checks;
   if (attributes.has_colors())
@@ -159,9 +161,10 @@ JoinedMeshes read_meshes_of(const VerifyArguments& arguments, const SceneMetadat
   return meshes;
 }
 
-/// Compares a solid DAG with the mesh: its surface, and then what is inside.
+/// Compares a solid DAG with the mesh: its surface, its inside, and the attributes of the surface.
 std::vector<VerifyCheck> solid_checks(const VerifyArguments& arguments, const DagModel& file,
-                                      const Mesh& mesh, Session& session) {
+                                      const JoinedMeshes& meshes, Session& session) {
+  const Mesh& mesh = meshes.source.mesh;
   const std::map<std::string, std::string>& settings = file.metadata().build;
   const std::string& rule = settings.at("solid");
   const Work work = &session.progress;
@@ -183,6 +186,10 @@ std::vector<VerifyCheck> solid_checks(const VerifyArguments& arguments, const Da
     check.detail = "the file has an unknown rule for the inside: " + printable(rule);
   }
   checks.push_back(std::move(check));
+  if (checks.back().result != Result::kPassed) return checks;
+  const SvdagView cover = surface.view();
+  for (VerifyCheck& values : attribute_checks(arguments, file, meshes, &cover, session))
+    checks.push_back(std::move(values));
   return checks;
 }
 
@@ -218,13 +225,13 @@ std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, const Vdag
       is_cut || file.attributes().has_colors() || file.attributes().has_normals(), session);
   const MeshWithAppearance& source = meshes.source;
   if (file.metadata().build.contains("solid"))
-    return solid_checks(arguments, file, source.mesh, session);
+    return solid_checks(arguments, file, meshes, session);
   std::vector<VerifyCheck> checks =
       is_cut ? alpha_checks(arguments, file, source, session)
              : std::vector{cover_check(arguments, file.view(), file.grid(), source.mesh, session)};
   // If the voxels differ from the mesh, the attributes do too.
   if (checks.back().result != Result::kPassed) return checks;
-  for (VerifyCheck& check : attribute_checks(arguments, file, meshes, session))
+  for (VerifyCheck& check : attribute_checks(arguments, file, meshes, nullptr, session))
     checks.push_back(std::move(check));
   return checks;
 }

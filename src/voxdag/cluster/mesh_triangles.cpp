@@ -7,6 +7,7 @@
 
 #include "voxdag/cluster/missing_files.hpp"
 #include "voxdag/cluster/shared_mesh.hpp"
+#include "voxdag/core/float_origin.hpp"
 
 namespace voxdag {
 namespace {
@@ -67,6 +68,7 @@ MeshFacts mesh_facts(const MeshJob& job) {
   MeshFacts facts;
   Box3d bounds = Box3d::empty();
   std::tie(bounds, facts.bad_triangles) = mesh.used_vertices();
+  facts.rounding = float_rounding(bounds, mesh.origin());
   facts.grid = grid_of(job, bounds);
   facts.vertices = mesh.count_vertices();
   facts.triangles = mesh.triangles().size();

@@ -19,16 +19,17 @@ struct MeshJob {
   const WorkFolder& folder;
   const std::filesystem::path& mesh;
   const GridRequest& grid;
-  ReadOptions reading;      ///< Has the budget and the progress.
-  std::size_t chunk_bytes;  ///< Of the mesh file; see SharedMesh.
-  InputTransform transform = {};
+  ReadOptions reading;            ///< Has the budget and the progress.
+  std::size_t chunk_bytes;        ///< Of the mesh file; see SharedMesh.
+  InputTransform transform = {};  ///< Moves the mesh before the grid is placed.
 };
 
 /// The grid of a mesh, its size, and the segments that it is stored in.
 struct MeshFacts {
   Grid grid;
   std::uint64_t vertices = 0, triangles = 0;
-  std::uint64_t bad_triangles = 0;  ///< Those that have a vertex that is not finite: left out.
+  std::uint64_t bad_triangles = 0;  ///< Left out: they have a vertex that is not finite.
+  double rounding = 0;              ///< Largest error of a vertex in float32: float_rounding().
   std::uint64_t segments = 0, triangles_per_segment = 0;
 };
 

@@ -99,7 +99,7 @@ class PartsRun {
                   job.grid,
                   job.reading,
                   job.chunk_bytes,
-                  InputTransform(job.transform, custom_of(job.mesh.string()))},
+                  InputTransform(job.transform, custom_of(job.mesh.string(), job.reading.format))},
         log_(folder, ranks.rank()) {
     mesh_job_.reading.work = work;
   }
@@ -126,6 +126,7 @@ class PartsRun {
     metadata.source = {job_.mesh.filename().string(), facts.vertices,
                        facts.triangles - facts.bad_triangles};
     report_.bad_triangles = facts.bad_triangles;
+    report_.rounding = facts.rounding;
     metadata.program = program;
     metadata.build = build_settings(job_);
     metadata.counts = dag.counts;

@@ -38,7 +38,7 @@ struct PartsJob {
   std::size_t chunk_bytes = kChunkBytes;
   /// A DAG with more node words gets long pointers (stored/svdag/long_svdag.hpp). For tests.
   std::uint64_t most_plain_words = kMaxPlainWords;
-  TransformRequest transform = {};
+  TransformRequest transform = {};  ///< Moves the mesh before the grid is placed.
 };
 
 enum class PartsStep { kTriangles, kParts, kMerge, kNumber, kWrite };
@@ -51,6 +51,7 @@ struct PartsReport {
   std::array<double, kPartsSteps.size()> cpu_seconds{};  ///< Of the threads of all ranks, per step.
   std::array<std::uint64_t, kPartsSteps.size()> bytes_sent{};  ///< Between ranks, per step.
   std::uint64_t bad_triangles = 0;  ///< Left out: they have a vertex that is not finite.
+  double rounding = 0;              ///< Largest error of a vertex in float32, in world units.
   std::uint64_t parts = 0;
   std::uint64_t built = 0;  ///< Parts that this run built; the others were whole already.
   std::uint32_t mailboxes = 0;

@@ -227,8 +227,7 @@ std::pair<Box3d, std::uint64_t> SharedMesh::used_vertices() {
     if (ranks_.rank() == 0) throw Error(path_.string(), "", kNoGoodTriangle);
     ranks_.barrier();
   }
-  const Vec3d origin = is_moved() ? moved_origin_ : origin_;
-  return {{from_origin(origin, used.bounds.lo), from_origin(origin, used.bounds.hi)},
+  return {{from_origin(origin(), used.bounds.lo), from_origin(origin(), used.bounds.hi)},
           used.bad_triangles};
 }
 

@@ -9,8 +9,7 @@
 ///   mesh/vertices-T    Vec3f of each vertex, from Mesh::origin
 ///   mesh/triangles-T   Triangle: three indices into all vertices
 ///   mesh/origin        Mesh::origin, if rank 0 has read the mesh
-///   mesh/near/         vertices and triangles of a mesh that is far from 0: the others have no
-///   origin
+///   mesh/near/         the same of a mesh that is far from 0, read again from its origin
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -89,19 +88,20 @@ class SharedMesh {
   SharedMesh(Ranks& ranks, const WorkFolder& folder, const std::filesystem::path& path,
              const ReadOptions& reading, std::size_t chunk_bytes);
 
-  /// Moves what position() and used_vertices() return as move_mesh() does. Collective.
+  /// Moves the mesh as move_mesh() does: position() and used_vertices() return moved vertices, the
+  /// files keep theirs. Collective.
   void move(const InputTransform& transform);
-  /// Returns where a vertex that vertices() has lies, in world units.
-  Vec3d position(Vec3f vertex) const {
-    return from_origin(is_moved() ? moved_origin_ : origin_, stored(vertex));
-  }
+  /// Returns the Mesh::origin of the moved mesh.
+  Vec3d origin() const { return is_moved() ? moved_origin_ : origin_; }
+  /// Returns the position of a vertex of vertices(), moved, in world units.
+  Vec3d position(Vec3f vertex) const { return from_origin(origin(), stored(vertex)); }
 
   const ArrayFiles<Vec3f>& vertices() const { return *vertices_; }
   const ArrayFiles<Triangle>& triangles() const { return *triangles_; }
   /// Returns the number of vertices that read_mesh() gives: vertices() can repeat some. Collective.
   std::uint64_t count_vertices();
-  /// Returns the box of the vertices that triangles use, in world units, and the number of
-  /// triangles that have a vertex that is not finite; both without these. Collective.
+  /// Returns the box of the vertices that triangles use, in world units, without triangles that
+  /// have a vertex that is not finite, and the number of those triangles. Collective.
   std::pair<Box3d, std::uint64_t> used_vertices();
 
   /// Drops the pages of the mesh from this process's memory. Thread-safe.
@@ -138,9 +138,9 @@ class SharedMesh {
   std::vector<ChunkCounts> starts_;  ///< Contents of all chunks before each; then of all.
   std::optional<ArrayFiles<Vec3f>> vertices_;
   std::optional<ArrayFiles<Triangle>> triangles_;
-  Vec3d origin_{};
+  Vec3d origin_{};  ///< Of the vertices in the files.
   InputTransform transform_;
-  Vec3d moved_origin_{};  ///< As origin_, after transform_.
+  Vec3d moved_origin_{};  ///< Mesh::origin after transform_, which the files do not have.
 };
 
 }  // namespace voxdag

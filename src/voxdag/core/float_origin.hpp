@@ -1,6 +1,7 @@
 #pragma once
 /// The place from which points are measured before they are rounded to float32.
 #include <algorithm>
+#include <cmath>
 
 #include "voxdag/core/box.hpp"
 
@@ -20,6 +21,16 @@ inline Vec3d float_origin(const Box3d& box) {
   for (int axis = 0; axis < 3; ++axis)
     if (std::max(box.lo[axis], -box.hi[axis]) > kFarSides * longest) origin[axis] = box.lo[axis];
   return origin;
+}
+
+/// Returns the largest error of a coordinate of points in `box` that are measured from `origin`
+/// and rounded to float32. 0 for an empty box.
+inline double float_rounding(const Box3d& box, Vec3d origin) {
+  double farthest = 0;
+  if (box.is_empty()) return farthest;
+  for (const Vec3d corner : {box.lo - origin, box.hi - origin})
+    for (int axis = 0; axis < 3; ++axis) farthest = std::max(farthest, std::abs(corner[axis]));
+  return farthest * 0x1p-24;
 }
 
 }  // namespace voxdag

@@ -19,6 +19,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/io/resolved_output.hpp"
+#include "voxdag/core/io/unpacked_name.hpp"
 #include "voxdag/formats/imports/volumes/gzip_stream.hpp"
 
 namespace voxdag {

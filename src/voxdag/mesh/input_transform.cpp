@@ -1,16 +1,16 @@
 #include "voxdag/mesh/input_transform.hpp"
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string_view>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/float_origin.hpp"
+#include "voxdag/core/io/unpacked_name.hpp"
+#include "voxdag/core/number_text.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/mesh/place_vertices.hpp"
 
 namespace voxdag {
 namespace {
@@ -31,17 +31,8 @@ int axis_of(std::string_view text) {
 }
 
 double number_of(std::string_view text) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number))
-    throw std::invalid_argument("\"" + std::string(text) + "\" is not a number");
-  return number;
-}
-
-/// Returns the shortest text that reads as this number.
-std::string text_of(double number) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+  if (const std::optional<double> number = number_in(text)) return *number;
+  throw std::invalid_argument("\"" + std::string(text) + "\" is not a number");
 }
 
 /// Splits "from:to". `from` is empty if there is no colon.
@@ -63,17 +54,15 @@ void for_each_part(std::string_view text, const Body& body) {
 
 }  // namespace
 
-FormatCustom custom_of(const std::string& file_name) {
-  std::string name = file_name;
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const char* packed : {".gz", ".zst"})
-    if (name.ends_with(packed)) name.resize(name.size() - std::string_view(packed).size());
-  for (const char* ending : {".gltf", ".glb", ".dae"})
-    if (name.ends_with(ending)) return {1, "m"};
-  if (name.ends_with(".3mf")) return {2, "mm"};
-  for (const char* ending : {".obj", ".ply", ".off", ".fbx", ".vdb"})
-    if (name.ends_with(ending)) return {};
+FormatCustom custom_of(const std::string& file_name, const std::string& format) {
+  const std::string ending =
+      lower_case(format.empty() ? unpacked_name(file_name).extension().string() : "." + format);
+  const auto is_one_of = [&](std::initializer_list<std::string_view> endings) {
+    return std::find(endings.begin(), endings.end(), ending) != endings.end();
+  };
+  if (is_one_of({".gltf", ".glb", ".dae"})) return {1, "m"};
+  if (ending == ".3mf") return {2, "mm"};
+  if (is_one_of({".obj", ".ply", ".off", ".fbx", ".vdb"})) return {};
   return {2, ""};
 }
 
@@ -85,11 +74,12 @@ void add_settings(const TransformRequest& request, std::map<std::string, std::st
   };
   add("up", request.up);
   add("unit", request.unit);
-  if (request.scale != 1) settings["scale"] = text_of(request.scale);
+  if (request.scale != 1) settings["scale"] = number_text(request.scale);
   if (!request.rotate.empty()) settings["rotate"] = request.rotate;
   if (request.translate != Vec3d{})
-    settings["translate"] = text_of(request.translate.x) + "," + text_of(request.translate.y) +
-                            "," + text_of(request.translate.z);
+    settings["translate"] = number_text(request.translate.x) + "," +
+                            number_text(request.translate.y) + "," +
+                            number_text(request.translate.z);
 }
 
 TransformRequest transform_request(const std::map<std::string, std::string>& settings) {
@@ -159,21 +149,9 @@ bool InputTransform::keeps_axes() const {
 
 void move_mesh(MeshWithAppearance& source, const InputTransform& transform, Work work) {
   if (transform.is_identity()) return;
-  Mesh& mesh = source.mesh;
-  Box3f bounds = Box3f::empty();
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    work.poll_seldom(t);
-    for (const std::uint32_t vertex : mesh.triangles[t]) {
-      const Vec3f moved = transform.vertex(mesh.position(vertex), {});
-      if (!is_finite(moved))
-        throw Error("scaled and moved like this, vertices leave the range of float");
-      bounds.extend(moved);
-    }
-  }
-  const Vec3d origin = float_origin({static_cast<Vec3d>(bounds.lo), static_cast<Vec3d>(bounds.hi)});
-  polled_for(mesh.vertices.size(), 4096, work, "move",
-             [&](std::size_t i) { mesh.vertices[i] = transform.vertex(mesh.position(i), origin); });
-  mesh.origin = origin;
+  const Mesh& mesh = source.mesh;
+  place_vertices(
+      source.mesh, [&](std::size_t i) { return transform.point(mesh.position(i)); }, work);
   Appearance& appearance = source.appearance;
   polled_for(appearance.normals.size(), 4096, work, "move", [&](std::size_t i) {
     appearance.normals[i] =

@@ -1,6 +1,6 @@
 #pragma once
-/// Moves the coordinates of an input before the grid is placed: its unit, its up axis, a scale,
-/// turns and a translation, in this order.
+/// Moves the coordinates of an input before the grid is placed: converts the unit, turns the up
+/// axis, scales, rotates and translates, in this order.
 #include <array>
 #include <map>
 #include <optional>
@@ -12,30 +12,35 @@
 
 namespace voxdag {
 
-/// The coordinates that the format of a file has by its specification or by custom.
+/// The up axis and the unit that a format has by its specification or by custom.
 struct FormatCustom {
   int up = 1;        ///< The axis that points up: 0 (x), 1 (y) or 2 (z).
-  std::string unit;  ///< A unit of TransformRequest; empty: the format does not say it.
+  std::string unit;  ///< A unit of TransformRequest; empty: the format has none.
 };
-/// Returns the customs of a format by the end of the file's name: z is up in .stl, .3mf and files
-/// of points and volumes, y in others; .gltf, .glb and .dae are in metres, .3mf in millimetres.
-FormatCustom custom_of(const std::string& file_name);
+/// Returns the customs of `format` ("obj"), or, if it is empty, of the format that the ending of
+/// the file's name tells. z is up in .stl, .3mf and files of points and volumes, y in others;
+/// .gltf, .glb and .dae are in metres, .3mf in millimetres.
+FormatCustom custom_of(const std::string& file_name, const std::string& format = {});
 
-/// What a user asks for. Texts are those of the options and of SceneMetadata::build.
+/// A move of the input: the values of --up, --unit, --scale, --rotate and --translate, as texts
+/// where the option takes text. SceneMetadata::build stores them.
 struct TransformRequest {
-  std::string up;    ///< "z": turns the up axis of the format to z. "y:z": that of the input is y.
-  std::string unit;  ///< mm, cm, m, in or ft; "in:mm": the input is in inches.
-  double scale = 1;  ///< Above 0.
+  /// "z" turns the up axis of the format to z; "y:z" turns y to z. Empty: no turn.
+  std::string up;
+  /// Unit of the result: mm, cm, m, in or ft; "in:mm" converts from inches. Empty: not converted.
+  std::string unit;
+  double scale = 1;    ///< Above 0.
   std::string rotate;  ///< Turns "axis:degrees", counter-clockwise, separated by commas.
   Vec3d translate{};   ///< In units of the result.
   friend bool operator==(const TransformRequest&, const TransformRequest&) = default;
 };
 
 /// Adds the members that are set to `settings`, with the keys up, unit, scale, rotate, translate.
-/// `up` and `unit` are those of the result; up_from and unit_from, if they were given, of the
-/// input.
+/// The keys up_from and unit_from have the axis and the unit of the input, if the request names
+/// them.
 void add_settings(const TransformRequest& request, std::map<std::string, std::string>& settings);
-/// Returns what add_settings() added. Throws std::invalid_argument if a value is malformed.
+/// Returns the request that add_settings() added. Throws std::invalid_argument if a value is
+/// malformed.
 TransformRequest transform_request(const std::map<std::string, std::string>& settings);
 
 /// A turn and a uniform scale, then a translation.
@@ -49,8 +54,7 @@ class InputTransform {
   double factor() const { return factor_; }
   Vec3d turned(Vec3d v) const { return turn_[0] * v.x + turn_[1] * v.y + turn_[2] * v.z; }
   Vec3d point(Vec3d p) const { return turned(p) * factor_ + translate_; }
-  /// Returns where a point is moved, as a vertex measured from `origin`. All meshes are moved by
-  /// it.
+  /// Returns point(p), measured from `origin` and rounded to float32.
   Vec3f vertex(Vec3d p, Vec3d origin) const { return static_cast<Vec3f>(point(p) - origin); }
   /// Returns whether axes become axes, so that voxels become voxels.
   bool keeps_axes() const;
@@ -65,7 +69,7 @@ class InputTransform {
 };
 
 /// Moves vertices, normals and heights of a mesh in double precision, and sets Mesh::origin anew.
-/// Throws Error if a vertex that a triangle uses leaves the range of float, and Cancelled.
+/// Throws Error if a vertex that a triangle uses leaves the range of float32, and Cancelled.
 void move_mesh(MeshWithAppearance& source, const InputTransform& transform, Work work = {});
 
 }  // namespace voxdag

@@ -3,9 +3,8 @@
 #include <utility>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/float_origin.hpp"
-#include "voxdag/mesh/mesh_bounds.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
+#include "voxdag/mesh/place_vertices.hpp"
 
 namespace voxdag {
 namespace {
@@ -27,20 +26,6 @@ void append_corners(std::vector<T>& to, std::vector<T>& from, std::size_t corner
 
 void append_names(std::vector<std::string>& to, std::vector<std::string>& from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-}
-
-/// Returns the bounds of both meshes, each coordinate rounded to float.
-Box3d joined_bounds(const Mesh& a, const Mesh& b) {
-  const auto rounded = [](Vec3d p) { return static_cast<Vec3d>(static_cast<Vec3f>(p)); };
-  const Box3d of_a = referenced_bounds(a), of_b = referenced_bounds(b);
-  return {rounded(min(of_a.lo, of_b.lo)), rounded(max(of_a.hi, of_b.hi))};
-}
-
-/// Measures the vertices from another origin.
-void measure_from(Vec3d origin, Mesh& mesh) {
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    mesh.vertices[i] = static_cast<Vec3f>(mesh.position(i) - origin);
-  mesh.origin = origin;
 }
 
 }  // namespace
@@ -72,15 +57,14 @@ void append_mesh(MeshWithAppearance& to, MeshWithAppearance from, MemoryBudget* 
   const std::uint64_t before = all_bytes(to) + all_bytes(from);
   // Arrays that grow are copied into ones of up to twice the size.
   MemoryReservation growth(memory, before + all_bytes(to));
-  if (mesh.origin != more.origin) {
-    const Vec3d origin = float_origin(joined_bounds(mesh, more));
-    measure_from(origin, mesh);
-    measure_from(origin, more);
-  }
   mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
   for (Triangle& triangle : more.triangles)
     for (std::uint32_t& vertex : triangle) vertex += static_cast<std::uint32_t>(vertices);
   mesh.triangles.insert(mesh.triangles.end(), more.triangles.begin(), more.triangles.end());
+  if (mesh.origin != more.origin)
+    place_vertices(mesh, [&](std::size_t i) {
+      return from_origin(i < vertices ? mesh.origin : more.origin, mesh.vertices[i]);
+    });
   for (std::uint32_t& material : more.triangle_materials)
     material += static_cast<std::uint32_t>(mesh.materials.size());
   mesh.triangle_materials.insert(mesh.triangle_materials.end(), more.triangle_materials.begin(),

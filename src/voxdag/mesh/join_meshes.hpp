@@ -1,5 +1,5 @@
 #pragma once
-/// Joins the meshes of several files, and numbers the triangles by what they belong to.
+/// Joins the meshes of several files, and numbers their triangles by file or object.
 #include <span>
 #include <string>
 
@@ -9,14 +9,14 @@
 namespace voxdag {
 
 /// Prepares a mesh for append_mesh(): gives it the material and the object `name` if it has none,
-/// and puts "name/" before the names of its objects. Reserves what that takes in `memory`. Throws
+/// and puts "name/" before the names of its objects. Reserves the added bytes in `memory`. Throws
 /// OverMemory.
 void name_parts(MeshWithAppearance& source, const std::string& name, MemoryBudget* memory);
 
-/// Appends a mesh. Both have passed name_parts(), and both have an appearance or neither has.
+/// Appends a mesh. Both must have passed name_parts(), and both or neither must have an appearance.
 /// Corners without a normal, a texture coordinate or a colour get unset ones. memory_bytes() of
-/// both must be reserved in `memory`; those of the result are, afterwards. Throws Error if the
-/// result has too many vertices or triangles, and OverMemory.
+/// both must be reserved in `memory`; the function reserves those of the result instead. Throws
+/// Error if the result has too many vertices or triangles, and OverMemory.
 void append_mesh(MeshWithAppearance& to, MeshWithAppearance from, MemoryBudget* memory);
 
 /// Returns the object of each of `triangles` triangles. The first run begins at triangle 0. Throws

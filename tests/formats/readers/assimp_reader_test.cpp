@@ -39,6 +39,13 @@ Objects:  {
 				a: 0
 			}
 		}
+		Layer: 0 {
+			Version: 100
+			LayerElement:  {
+				Type: "LayerElementMaterial"
+				TypedIndex: 0
+			}
+		}
 	}
 	Model: 2, "Model::square", "Mesh" {
 		Version: 232

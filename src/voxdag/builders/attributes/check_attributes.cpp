@@ -15,6 +15,8 @@
 #include "voxdag/builders/pieces/split_triangles.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/attributes/cell_index_lookup.hpp"
 
 namespace voxdag {
 namespace {
@@ -54,19 +56,23 @@ struct CellErrors {
 /// Compares cells. Each thread has its own.
 class CellComparer {
  public:
-  /// `source` has the triangles without those that repeat others, `all` has all.
-  CellComparer(const ColoredDagView& colored, const TriangleSource& source,
-               const TriangleSource& all, std::span<const std::uint32_t> materials,
-               const SurfaceShading& shading)
-      : attributes_(colored.attributes),
+  /// `cover` is the DAG of the mesh, whose cells `index` numbers. `source` has the triangles
+  /// without those that repeat others, `all` has all.
+  CellComparer(const ColoredDagView& colored, const SvdagView& cover, const CellIndexView& index,
+               const TriangleSource& source, const TriangleSource& all,
+               std::span<const std::uint32_t> materials, const SurfaceShading& shading)
+      : dag_(colored.dag),
+        attributes_(colored.attributes),
         source_(source),
-        filter_(colored.dag, colored.attributes.index, source, &shading,
-                colored.attributes.has_normals(), nullptr),
-        materials_(colored.dag, colored.attributes.index, all, materials, nullptr) {}
+        filter_(cover, index, source, &shading, colored.attributes.has_normals(), nullptr),
+        materials_(cover, index, all, materials, nullptr) {}
 
+  /// Compares a cell of the cover, if the coloured DAG has it.
   CellErrors compare(const CellTask& task) {
     CellErrors errors;
-    const std::uint64_t number = task.cell.number;
+    std::uint64_t number = 0;
+    if (!find_cell_number(dag_, attributes_.index, task.place, task.cell.level, number))
+      return errors;
     if (attributes_.has_colors() || attributes_.has_normals()) {
       const SurfaceSum sum = filter_.filter(without_duplicates(task), values_);
       if (sum.area > 0 && attributes_.has_colors())
@@ -97,6 +103,7 @@ class CellComparer {
     return task;
   }
 
+  const SvdagView& dag_;
   const DagAttributesView& attributes_;
   const TriangleSource& source_;
   std::vector<std::uint32_t> unique_;
@@ -126,13 +133,9 @@ void add(ValueCheck& check, double error, const VisitedCell& cell) {
 /// Walks breadth first to the cells with these numbers, which increase, and compares them.
 class SampleWalk {
  public:
-  SampleWalk(const ColoredDagView& colored, const TriangleSource& source,
+  SampleWalk(const SvdagView& cover, const CellIndexView& index, const TriangleSource& source,
              tbb::enumerable_thread_specific<CellComparer>& comparers, Work work)
-      : dag_(colored.dag),
-        index_(colored.attributes.index),
-        source_(source),
-        comparers_(comparers),
-        work_(work) {}
+      : dag_(cover), index_(index), source_(source), comparers_(comparers), work_(work) {}
 
   void compare(std::span<const std::uint64_t> numbers, AttributeCheck& check) {
     std::vector<VisitedCell> cells(1);
@@ -208,11 +211,18 @@ std::vector<std::uint64_t> next_samples(std::uint64_t cells, std::uint64_t left,
 
 AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const ColoredDagView& colored,
                                 const SurfaceShading& shading, std::uint64_t samples,
-                                std::uint64_t seed, Work work, const TriangleIds& ids) {
+                                std::uint64_t seed, Work work, const TriangleIds& ids,
+                                const SvdagView* cover) {
   AttributeCheck check;
+  const SvdagView& dag = cover != nullptr ? *cover : colored.dag;
   const std::span<const std::uint32_t> materials =
       ids.count > 0 ? ids.ids : std::span<const std::uint32_t>(mesh.triangle_materials);
-  if (colored.is_empty()) return check;
+  if (colored.is_empty() || dag.is_empty()) return check;
+  const CellIndex cover_index =
+      cover != nullptr ? build_cell_index(dag, colored.attributes.index.finest_level, work.memory)
+                       : CellIndex();
+  const MemoryReservation index_bytes(work.memory, cover_index.view().bytes());
+  const CellIndexView index = cover != nullptr ? cover_index.view() : colored.attributes.index;
   const QuantizedMesh quantized(mesh, grid, work);
   const IndexSet duplicates = find_duplicate_surfaces(mesh, &shading.appearance(), work),
                  no_duplicates;
@@ -221,9 +231,9 @@ AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const Colore
   const TriangleSource all{grid, quantized, no_open_edges, nullptr, no_duplicates};
   const TriangleSource source{grid, quantized, no_open_edges, nullptr, duplicates};
   tbb::enumerable_thread_specific<CellComparer> comparers(
-      [&] { return CellComparer(colored, source, all, materials, shading); });
-  SampleWalk walk(colored, all, comparers, work);
-  const std::uint64_t cells = colored.attributes.index.cells;
+      [&] { return CellComparer(colored, dag, index, source, all, materials, shading); });
+  SampleWalk walk(dag, index, all, comparers, work);
+  const std::uint64_t cells = index.cells;
   const bool is_all = samples >= cells;
   std::mt19937_64 random(seed);
   for (std::uint64_t done = 0, count = std::min(samples, cells); done < count;) {

@@ -34,11 +34,13 @@ struct AttributeCheck {
 ///
 /// Rounding changes the channels of a colour by one step of 8 bits, which is an error of 1/255, and
 /// turns a normal by less than 0.1 degrees. Materials with equal areas differ by less than 0.001.
-/// `mesh` must have materials if the DAG has, or `ids` those that the DAG stores. The result does
-/// not depend on the number of threads. Throws Cancelled.
+/// `mesh` must have materials if the DAG has, or `ids` the ids that the DAG stores. `cover` is the
+/// DAG of the mesh if `colored` is that of a solid: then only cells of the surface are compared.
+/// The result does not depend on the number of threads. Throws Cancelled.
 AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const ColoredDagView& colored,
                                 const SurfaceShading& shading, std::uint64_t samples,
-                                std::uint64_t seed, Work work = {}, const TriangleIds& ids = {});
+                                std::uint64_t seed, Work work = {}, const TriangleIds& ids = {},
+                                const SvdagView* cover = nullptr);
 
 /// Tolerances for the errors of check_attributes(), to add to the bounds of the encoder.
 inline constexpr double kColorTolerance = 1.5 / 255, kNormalTolerance = 0.1,

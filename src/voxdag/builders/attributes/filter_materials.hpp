@@ -11,7 +11,7 @@
 
 namespace voxdag {
 
-/// A number for each triangle of a mesh: what it belongs to.
+/// The id of each triangle of a mesh: the number of its object or file.
 struct TriangleIds {
   std::span<const std::uint32_t> ids;
   std::uint32_t count = 0;  ///< Ids are less than this, at most kMaxMaterials. 0: no ids.

@@ -1,5 +1,5 @@
 #pragma once
-/// The attributes of solid bodies: their insides take those of the nearest surface.
+/// Computes the attributes of solid bodies: the inside takes the values of the nearest surface.
 #include <optional>
 
 #include "voxdag/builders/attributes/build_attributes.hpp"
@@ -11,7 +11,8 @@ namespace voxdag {
 /// of the surface that is nearest to their centre (algebra/query/nearest_voxel.hpp), or
 /// `inside_color`, sRGB encoded, if it is given. The bounds are those of `options`; the values of
 /// `surface` should be lossless. Time grows with the cells of `solid`. The budget no longer counts
-/// the result when the function returns. Throws OverMemory and Cancelled.
+/// the result when the function returns. Throws Error if the surface is empty and the solid is not,
+/// OverMemory and Cancelled.
 DagAttributes inside_attributes(const ColoredDagView& surface, const SvdagView& solid,
                                 const AttributeOptions& options,
                                 const std::optional<Value8>& inside_color, Work work = {});

@@ -123,9 +123,10 @@ bool is_between_voxels(const QuantizedTriangle& t) {
 /// Returns the solid without the voxels that the body only touches with faces between voxels.
 /// fill(cover) fills a cover.
 ///
-/// A cover takes half-open cubes, which have their lower sides. With cubes that have their upper
-/// sides instead, the body sets the same voxels but for those that it only touches. These go if the
-/// body has a voxel beside them: a sheet between voxels, which encloses nothing, stays.
+/// The cover counts a cube's lower sides to the cube. A second solid, from a cover that counts the
+/// upper sides instead, differs only in the voxels that the body touches. The function removes
+/// those that have a voxel of both solids beside them; a sheet between voxels, which encloses
+/// nothing, stays.
 template <class Fill>
 Svdag remove_touched(Svdag solid, const QuantizedMesh& mesh, const Fill& fill, Work work) {
   CountedVector<QuantizedTriangle> faces(work.memory), mirrored_mesh(work.memory);
@@ -165,7 +166,7 @@ Svdag remove_touched(Svdag solid, const QuantizedMesh& mesh, const Fill& fill, W
 }
 
 /// Returns the solid without the voxels of `cover` whose centres are outside. are_inside(voxels)
-/// tells for each whether it is inside.
+/// returns for each voxel whether its centre is inside.
 template <class AreInside>
 Svdag remove_outer_centres(const Svdag& solid, const SvdagView& cover, const AreInside& are_inside,
                            Work work) {

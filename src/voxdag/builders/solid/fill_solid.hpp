@@ -26,9 +26,9 @@ enum class SolidRule {
 struct SolidOptions {
   SolidRule rule = SolidRule::kParity;
   double winding_threshold = 0.5;  ///< Positive; for kWinding.
-  /// Sets a voxel if and only if its centre is inside, also where the surface passes. A centre on
-  /// the surface belongs to one side, so that bodies that touch share no voxel. Not for kFlood.
-  /// kWinding takes a point that lies less than 1/256 voxel beside the centre.
+  /// Whether the solid has exactly the voxels whose centre is inside. A centre on the surface
+  /// belongs to one side, so that bodies that touch share no voxel. Not for kFlood. kWinding tests
+  /// a point less than 1/256 voxel beside the centre.
   bool by_centre = false;
 };
 
@@ -37,9 +37,9 @@ struct SolidOptions {
 /// a connected set of them are inside or none is, but for kWinding in holes. Time and memory grow
 /// with `cover`, the mesh and the area of its holes, not with the voxels.
 ///
-/// A face of the mesh that lies exactly between voxels belongs to the voxels on the side of the
-/// body: the voxels beyond it, which the body only touches, are not set, unless they touch such
-/// faces both with lower and with upper sides. kFlood, which knows no body, keeps them.
+/// A face of the mesh that lies exactly between voxels belongs to the voxels on its inner side. The
+/// solid lacks the voxels beyond it, which the body only touches, unless they touch such faces both
+/// with lower and with upper sides. kFlood keeps all voxels of the cover.
 ///
 /// kParity throws Error if the mesh is not closed. kParity and kWinding throw Error if the mesh
 /// reaches out of the range of QuantizedMesh. kFlood throws Error for by_centre. Throws OverMemory

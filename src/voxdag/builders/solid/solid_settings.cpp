@@ -1,24 +1,17 @@
 #include "voxdag/builders/solid/solid_settings.hpp"
 
-#include <charconv>
 #include <stdexcept>
+
+#include "voxdag/core/number_text.hpp"
 
 namespace voxdag {
 namespace {
 
 constexpr const char *kThreshold = "winding_threshold", *kRule = "solid_rule";
 
-/// Returns the shortest text that reads as this number.
-std::string text_of(double number) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, number).ptr};
-}
-
 double positive_number(const std::string& text) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size() || !(number > 0))
-    throw std::invalid_argument("\"" + text + "\" is no positive number");
+  const double number = number_in(text).value_or(0);
+  if (!(number > 0)) throw std::invalid_argument("\"" + text + "\" is no positive number");
   return number;
 }
 
@@ -45,7 +38,7 @@ SolidRule solid_rule(const std::string& name) {
 void add_solid_settings(const SolidOptions& options, std::map<std::string, std::string>& settings) {
   settings["solid"] = name_of(options.rule);
   if (options.rule == SolidRule::kWinding)
-    settings[kThreshold] = text_of(options.winding_threshold);
+    settings[kThreshold] = number_text(options.winding_threshold);
   if (options.by_centre) settings[kRule] = "centre";
 }
 

@@ -31,6 +31,20 @@ Vec3l used_voxels(const Grid& grid, const Box3d& box, bool has_upper_sides) {
   return used;
 }
 
+/// Returns the box of step 1; an empty one if the mesh has no triangles.
+Box3d box_of(const Box3d& mesh_bounds, const GridRequest& request) {
+  Box3d box = request.bounds.value_or(mesh_bounds);
+  if (box.is_empty()) return box;
+  for (int axis = 0; axis < 3; ++axis) {
+    double& lo = box.lo[axis];
+    if (request.origin) lo = (*request.origin)[axis];
+    if (box.hi[axis] < lo) throw Error("all of the input lies below the origin of the grid");
+    if (request.snap && request.voxel_size) lo = multiple_below(lo, *request.voxel_size);
+    box.hi[axis] = std::max(box.hi[axis], lo);
+  }
+  return box;
+}
+
 }  // namespace
 
 Grid grid_for(const Mesh& mesh, const GridRequest& request) {
@@ -38,25 +52,13 @@ Grid grid_for(const Mesh& mesh, const GridRequest& request) {
 }
 
 Grid grid_for(const Box3d& mesh_bounds, const GridRequest& request) {
-  Box3d box = request.bounds.value_or(mesh_bounds);
-  if (request.origin && !box.is_empty()) {
-    for (int axis = 0; axis < 3; ++axis)
-      if (box.hi[axis] < (*request.origin)[axis])
-        throw Error("all of the input lies below the origin of the grid");
-    box.lo = *request.origin;
-  }
-  if (request.snap && request.voxel_size && !box.is_empty())
-    for (int axis = 0; axis < 3; ++axis)
-      box.lo[axis] = multiple_below(box.lo[axis], *request.voxel_size);
-  if (request.snap && !mesh_bounds.is_empty()) box.hi = max(box.hi, box.lo);
+  const Box3d box = box_of(mesh_bounds, request);
   Grid grid;
   if (request.resolution) {
     const std::int64_t inner = *request.resolution - 2 * request.padding;
     if (inner < 1)
       throw Error("a padding of " + std::to_string(request.padding) +
-                  " voxels on each side leaves "
-                  "none of " +
-                  std::to_string(*request.resolution));
+                  " voxels on each side leaves none of " + std::to_string(*request.resolution));
     grid = request.bounds ? divide_bounds(box, inner) : fit_voxels(box, inner);
   } else {
     grid = request.bounds ? grid_from_bounds(box, *request.voxel_size)

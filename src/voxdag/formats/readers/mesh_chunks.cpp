@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "voxdag/core/io/resolved_output.hpp"
+#include "voxdag/core/io/unpacked_name.hpp"
 #include "voxdag/formats/export_placement.hpp"
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
@@ -21,8 +22,7 @@ std::unique_ptr<MeshChunks> open_mesh_chunks(const std::filesystem::path& path,
   const std::string extension =
       options.format.empty() ? path.extension().string() : "." + options.format;
   // Only read_mesh() unpacks files.
-  if (path == "-" || extension == ".gz" || extension == ".zst" ||
-      resolve_output(path).descriptor >= 0)
+  if (path == "-" || unpacked_name(path) != path || resolve_output(path).descriptor >= 0)
     return nullptr;
   MappedFile file(path, MappedFile::Access::kSequential);
   switch (detect_mesh_format(file.text(), extension)) {

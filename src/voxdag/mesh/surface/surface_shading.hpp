@@ -17,8 +17,9 @@ namespace voxdag {
 struct SurfaceTables;
 
 struct SurfaceSample {
-  Vec3f
-      color;  ///< Mean colour of the visible part, linear light; without one, the nearest visible.
+  /// Mean colour of the visible part, linear light; without such a part, the nearest visible
+  /// colour.
+  Vec3f color;
   float coverage = 1;  ///< Visible part of the area, 0 to 1.
   Vec3f normal;  ///< Mean of the unit normals: shorter where they disagree. Zero for a triangle
                  ///< without area or normals.
