@@ -21,10 +21,10 @@ namespace {
 
 constexpr int kMaxNodeDepth = 200;  ///< Of nodes in nodes, with those that they name.
 
-GltfTransform rotation_about(Vec3d axis, double degrees) {
+AffineTransform rotation_about(Vec3d axis, double degrees) {
   const Vec3d u = normalized_or(axis, {0, 0, 1});
   const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
-  GltfTransform turn;
+  AffineTransform turn;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3d e = turn.columns[i];
     turn.columns[i] = e * c + cross(u, e) * s + u * (dot(u, e) * (1 - c));
@@ -32,17 +32,17 @@ GltfTransform rotation_about(Vec3d axis, double degrees) {
   return turn;
 }
 
-GltfTransform collada_matrix_of(std::string_view text) {
+AffineTransform collada_matrix_of(std::string_view text) {
   std::array<double, 16> m;
   parse_exact_numbers(text, m, "matrix");
-  GltfTransform transform;
+  AffineTransform transform;
   for (std::size_t c = 0; c < 4; ++c) transform.columns[c] = {m[c], m[4 + c], m[8 + c]};
   return transform;
 }
 
 /// Returns the transform of an element of a node; the identity for other elements.
-GltfTransform node_transform_of(const XmlElement& element) {
-  GltfTransform transform;
+AffineTransform node_transform_of(const XmlElement& element) {
+  AffineTransform transform;
   std::array<double, 4> v{};
   const std::span<double> three(v.data(), 3);
   if (element.name == "matrix") return collada_matrix_of(element.text);
@@ -77,7 +77,7 @@ struct ColladaGeometry {
 struct ColladaInstance {
   const ColladaGeometry* geometry;
   const XmlElement* element;  ///< instance_geometry or instance_controller.
-  GltfTransform transform;
+  AffineTransform transform;
 };
 
 class ColladaReader {
@@ -155,7 +155,7 @@ class ColladaReader {
   }
 
   void find_instances() {
-    GltfTransform unit;
+    AffineTransform unit;
     if (const XmlElement* const asset = tree_.root.at({"asset", "unit"}); asset != nullptr)
       in(*asset, [&] {
         double metres = 1;
@@ -169,11 +169,11 @@ class ColladaReader {
     visit_node(named(*scene, (*scene)["url"], "visual_scene"), unit, 0);
   }
 
-  void visit_node(const XmlElement& node, const GltfTransform& parent, int depth) {
+  void visit_node(const XmlElement& node, const AffineTransform& parent, int depth) {
     source_.work().poll();
     if (depth > kMaxNodeDepth) fail(node, "nodes are nested more than 200 deep");
     if (++visited_ > kMaxXmlInstances) fail(node, "the scene has more than 16777216 nodes");
-    GltfTransform transform = parent;
+    AffineTransform transform = parent;
     for (const XmlElement& child : node.children)
       in(child, [&] { transform = transform * node_transform_of(child); });
     for (const XmlElement& child : node.children) {
@@ -190,7 +190,7 @@ class ColladaReader {
   }
 
   void add_controller(const XmlElement& instance, const XmlElement& controller,
-                      GltfTransform transform, int depth) {
+                      AffineTransform transform, int depth) {
     const XmlElement* deformer = controller.child("skin");
     if (deformer == nullptr) deformer = controller.child("morph");
     if (deformer == nullptr || depth > 1) fail(controller, "is neither a skin nor a morph");
@@ -205,7 +205,7 @@ class ColladaReader {
   }
 
   void add_instance(const XmlElement& instance, const XmlElement& element,
-                    const GltfTransform& transform) {
+                    const AffineTransform& transform) {
     const auto [geometry, is_new] = geometries_.try_emplace(&element, source_.work().memory);
     if (is_new) read_geometry(element, geometry->second);
     if (!geometry->second.triangles.empty())

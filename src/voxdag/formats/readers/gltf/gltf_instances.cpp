@@ -9,7 +9,7 @@ namespace voxdag {
 namespace {
 
 /// Returns the rotation by a quaternion (x, y, z, w) of any length but zero.
-GltfTransform rotation(std::span<const double, 4> q, const GltfValue& user) {
+AffineTransform rotation(std::span<const double, 4> q, const GltfValue& user) {
   const double length2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (!(length2 > 0) || !std::isfinite(length2))
     throw user.error("the rotation must be a quaternion that is finite and not zero");
@@ -62,7 +62,7 @@ class SceneFinder {
     }
     if (!file_.array(GltfArray::kSkins).empty()) scene_.nodes.resize(nodes.size());
     scene_.is_shown.resize(nodes.size());
-    CountedVector<std::pair<std::uint64_t, GltfTransform>> stack(memory_);
+    CountedVector<std::pair<std::uint64_t, AffineTransform>> stack(memory_);
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, {}});
     CancelPoll poll(file_.source().work());
     while (!stack.empty()) {
@@ -72,7 +72,7 @@ class SceneFinder {
       const GltfValue node = file_.item(GltfArray::kNodes, index, file_.root());
       if (scene_.is_shown[index]) throw node.error("node is reached twice: nodes must form trees");
       scene_.is_shown[index] = 1;
-      const GltfTransform transform = parent * node_transform(node);
+      const AffineTransform transform = parent * node_transform(node);
       if (!scene_.nodes.empty()) scene_.nodes[index] = transform;
       if (!node["extensions"]["KHR_node_visibility"]["visible"].boolean(true)) continue;
       if (node["mesh"].exists()) add_mesh(node, static_cast<std::uint32_t>(index), transform);
@@ -88,7 +88,7 @@ class SceneFinder {
 
  private:
   /// Returns the transform of a node from its matrix or its translation, rotation and scale.
-  GltfTransform node_transform(const GltfValue& node) {
+  AffineTransform node_transform(const GltfValue& node) {
     const std::vector<double> m = node["matrix"].numbers(16);
     if (m.empty())
       return of_parts(node["translation"].numbers(3), node["rotation"].numbers(4),
@@ -98,16 +98,16 @@ class SceneFinder {
         std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11]), std::abs(m[15] - 1)});
     if (!(off <= kRounding)) throw node.error("the last row of the matrix must be 0 0 0 1");
     if (off > 0) ++rounded_;
-    GltfTransform transform;
+    AffineTransform transform;
     for (std::size_t c = 0; c < 4; ++c)
       transform.columns[c] = {m[4 * c], m[4 * c + 1], m[4 * c + 2]};
     return transform;
   }
 
   /// Returns the transform of a translation, a rotation and a scale, each of which may be empty.
-  static GltfTransform of_parts(std::span<const double> t, std::span<const double> r,
-                                std::span<const double> s, const GltfValue& user) {
-    GltfTransform transform;
+  static AffineTransform of_parts(std::span<const double> t, std::span<const double> r,
+                                  std::span<const double> s, const GltfValue& user) {
+    AffineTransform transform;
     if (!r.empty()) transform = rotation(r.first<4>(), user);
     for (std::size_t axis = 0; axis < s.size(); ++axis)
       transform.columns[axis] = transform.columns[axis] * s[axis];
@@ -115,14 +115,14 @@ class SceneFinder {
     return transform;
   }
 
-  void add_mesh(const GltfValue& node, std::uint32_t index, const GltfTransform& transform) {
+  void add_mesh(const GltfValue& node, std::uint32_t index, const AffineTransform& transform) {
     const std::uint64_t mesh = node["mesh"].whole();
     file_.item(GltfArray::kMeshes, mesh, node);
     const GltfValue instancing = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
     const GltfAccessor* const t = instance_values(instancing, "TRANSLATION", 3);
     const GltfAccessor* const r = instance_values(instancing, "ROTATION", 4);
     const GltfAccessor* const s = instance_values(instancing, "SCALE", 3);
-    const auto add = [&](const GltfTransform& of) {
+    const auto add = [&](const AffineTransform& of) {
       scene_.instances.push_back({static_cast<std::uint32_t>(mesh), index, of});
     };
     const GltfAccessor* const any = t != nullptr ? t : r != nullptr ? r : s;

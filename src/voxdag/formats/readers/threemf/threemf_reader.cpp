@@ -22,7 +22,7 @@ using ResourceId = std::pair<std::string, std::string>;
 
 struct Reference3mf {
   ResourceId object;
-  GltfTransform transform;
+  AffineTransform transform;
 };
 
 /// A triangle and the materials of its corners.
@@ -72,8 +72,8 @@ double millimetres_of(std::string_view unit) {
   throw Error("has the unknown unit " + in_quotes(unit));
 }
 
-GltfTransform item_transform_of(std::string_view text) {
-  GltfTransform transform;
+AffineTransform item_transform_of(std::string_view text) {
+  AffineTransform transform;
   if (text.empty()) return transform;
   std::array<double, 12> m;
   parse_exact_numbers(text, m, "transform");
@@ -149,7 +149,7 @@ class ModelHandler : public XmlHandler {
     std::string id(attributes["objectid"]);
     archive_.count_entry(path.size() + id.size());
     if (archive_.parts.insert(path).second) archive_.unread.push_back(path);
-    GltfTransform transform = item_transform_of(attributes["transform"]);
+    AffineTransform transform = item_transform_of(attributes["transform"]);
     transform.columns[3] = unit_.point(transform.columns[3]);  // Vertices are scaled, too.
     return {{std::move(path), std::move(id)}, transform};
   }
@@ -217,7 +217,7 @@ class ModelHandler : public XmlHandler {
   std::string part_;
   Archive3mf& archive_;
   bool is_root_;
-  GltfTransform unit_;
+  AffineTransform unit_;
   Object3mf* object_ = nullptr;
   std::string default_group_;           ///< Of the object.
   std::uint32_t default_material_ = 0;  ///< Of the object.
@@ -309,7 +309,7 @@ class ThreemfReader {
       find_instances({component.object, reference.transform * component.transform}, depth + 1);
   }
 
-  static void add(InstancedMesh& mesh, const Object3mf& object, const GltfTransform& transform) {
+  static void add(InstancedMesh& mesh, const Object3mf& object, const AffineTransform& transform) {
     mesh.begin_instance(transform);
     for (const Vec3d vertex : object.vertices) mesh.add_vertex(vertex);
     for (const ObjectTriangle& t : object.triangles) mesh.add_triangle(t.corners, t.materials[0]);
@@ -337,7 +337,7 @@ class ThreemfReader {
 
   const MeshSource& source_;
   Archive3mf archive_;
-  CountedVector<std::pair<const Object3mf*, GltfTransform>> instances_;
+  CountedVector<std::pair<const Object3mf*, AffineTransform>> instances_;
   std::uint64_t references_ = 0, vertices_ = 0, triangles_ = 0;
   bool has_gradients_ = false;
 };

@@ -23,7 +23,7 @@ InstancedMesh::InstancedMesh(const MeshSource& source, std::uint64_t vertices,
   mesh_.triangle_materials.reserve(triangles);
 }
 
-void InstancedMesh::begin_instance(const GltfTransform& transform) {
+void InstancedMesh::begin_instance(const AffineTransform& transform) {
   source_.work().poll();
   transform_ = transform;
   first_vertex_ = static_cast<std::uint32_t>(mesh_.vertices.size());
