@@ -33,6 +33,14 @@ inline std::string_view trim(std::string_view text) {
   return text;
 }
 
+/// Returns the text with ASCII letters in lower case.
+inline std::string to_lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
+  return out;
+}
+
 /// Parses the number that the text starts with into the nearest float or double (ties to even) and
 /// returns the number's end, or null if the text does not start with a number. Accepts infinities
 /// and NaN; a number too large for the type becomes infinite.

@@ -46,13 +46,6 @@ std::string_view take_options(std::string_view text, MtlMap& map) {
 
 }  // namespace
 
-std::string to_lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return out;
-}
-
 std::size_t take_numbers(std::string_view& text, std::span<float> numbers) {
   std::size_t count = 0;
   std::string_view rest = text;
