@@ -80,7 +80,7 @@ class MtlReader::Impl {
       material.emission = {1, 1, 1};
     material.alpha_mode = material.alpha_map.exists()   ? AlphaMode::kMask
                           : material.alpha < 1          ? AlphaMode::kBlend
-                          : material.color_map.exists() ? AlphaMode::kMask
+                          : material.color_map.exists() ? AlphaMode::kImpliedMask
                                                         : AlphaMode::kOpaque;
     material_ = nullptr;
   }
