@@ -17,11 +17,11 @@ struct GltfInstance {
 inline constexpr std::uint32_t kGltfNoNode = ~std::uint32_t{0};
 
 struct GltfScene {
-  explicit GltfScene(MemoryBudget* memory) : instances(memory), nodes(memory), is_shown(memory) {}
+  explicit GltfScene(MemoryBudget* memory) : instances(memory), nodes(memory), is_placed(memory) {}
 
   CountedVector<GltfInstance> instances;
   CountedVector<AffineTransform> nodes;  ///< World transforms, if the asset has skins.
-  CountedVector<char> is_shown;          ///< Whether a node is in the scene.
+  CountedVector<char> is_placed;         ///< Whether a node is in the scene, or `nodes` has it.
 };
 
 /// Returns the instances of the default scene: the nodes' meshes, once per instance of

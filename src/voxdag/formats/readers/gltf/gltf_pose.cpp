@@ -53,7 +53,7 @@ void GltfPose::read_joints(const GltfValue& skin) {
     poll.step();
     const std::uint64_t node = joints[j].whole();
     file_.item(GltfArray::kNodes, node, joints[j]);
-    if (!scene_.is_shown[node]) throw joints[j].error("the joint is not in the scene");
+    if (!scene_.is_placed[node]) throw joints[j].error("the joint is in a cycle of nodes");
     AffineTransform bind;
     if (matrices != nullptr) {
       const std::array<float, 16> m = matrices->floats<16>(j);
