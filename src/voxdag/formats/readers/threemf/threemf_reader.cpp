@@ -60,7 +60,8 @@ struct Archive3mf {
   std::set<std::string> parts;         ///< The models that others name.
   std::vector<std::string> unread;     ///< Those of them that are not read yet.
   std::vector<Material> materials{1};  ///< The first one is that of triangles without.
-  std::set<std::string> left_out;      ///< Kinds of properties.
+  /// Kinds of elements that are not read: of the shape, and of its colours.
+  std::set<std::string> left_out_shapes, left_out_colors;
 };
 
 double millimetres_of(std::string_view unit) {
@@ -202,14 +203,16 @@ class ModelHandler : public XmlHandler {
       material.name = attributes["name"];
       const std::string_view text = attributes[name == "base" ? "displaycolor" : "color"];
       const std::optional<Vec3f> color = property_color_of(text);
-      if (!color && !text.empty()) archive_.left_out.insert("colours that are not #RRGGBB");
+      if (!color && !text.empty()) archive_.left_out_colors.insert("colours that are not #RRGGBB");
       material.base_color = color.value_or(kDefaultColor);
       archive_.count_entry(material.name.size());
       archive_.materials.push_back(std::move(material));
       ++group_->count;
     } else if (name == "texture2dgroup" || name == "compositematerials" ||
-               name == "multiproperties" || name == "beamlattice") {
-      archive_.left_out.emplace(name);
+               name == "multiproperties") {
+      archive_.left_out_colors.emplace(name);
+    } else if (name == "beamlattice") {
+      archive_.left_out_shapes.emplace(name);
     }
   }
 
@@ -257,6 +260,7 @@ class ThreemfReader {
     result.mesh = mesh.take();
     for (const Material& material : archive_.materials)
       result.mesh.materials.push_back(material.name);
+    warn_of(archive_.left_out_shapes, result);
     if (parts == ReadParts::kMeshAndAppearance) add_appearance(result);
     return result;
   }
@@ -315,20 +319,23 @@ class ThreemfReader {
     for (const ObjectTriangle& t : object.triangles) mesh.add_triangle(t.corners, t.materials[0]);
   }
 
+  void warn_of(const std::set<std::string>& left_out, MeshWithAppearance& result) const {
+    for (const std::string& kind : left_out)
+      result.warnings.push_back(source_.name + ": " + kind + " is not read");
+  }
+
   void add_appearance(MeshWithAppearance& result) {
     result.appearance.materials = archive_.materials;
-    for (const std::string& kind : archive_.left_out)
-      result.warnings.push_back(source_.name + ": " + kind + " is not read");
+    warn_of(archive_.left_out_colors, result);
     if (!has_gradients_) return;
     // Corners have the colours, so that materials must not tint them.
     const MemoryReservation memory(source_.work().memory, 3 * triangles_ * sizeof(Rgba16));
     result.appearance.colors.reserve(3 * triangles_);
     for (const auto& [object, transform] : instances_) {
-      const auto& [x, y, z, origin] = transform.columns;
-      const bool is_mirrored = dot(cross(x, y), z) < 0;
       for (const ObjectTriangle& t : object->triangles)
-        for (const std::size_t corner : is_mirrored ? std::array<std::size_t, 3>{0, 2, 1}
-                                                    : std::array<std::size_t, 3>{0, 1, 2})
+        for (const std::size_t corner : transform.is_mirroring()
+                                            ? std::array<std::size_t, 3>{0, 2, 1}
+                                            : std::array<std::size_t, 3>{0, 1, 2})
           result.appearance.colors.push_back(
               to_rgba16(archive_.materials[t.materials[corner]].base_color, 1));
     }
@@ -343,6 +350,13 @@ class ThreemfReader {
 };
 
 }  // namespace
+
+bool is_3mf(std::string_view bytes) {
+  constexpr std::size_t kMaxDirectory = 65536;  // The end of it, with the names of the parts.
+  return bytes.starts_with("PK\3\4") &&
+         bytes.substr(bytes.size() - std::min(bytes.size(), kMaxDirectory)).find(".model") !=
+             bytes.npos;
+}
 
 MeshWithAppearance read_3mf(const MeshSource& source, ReadParts parts) {
   return ThreemfReader(source).read(parts);

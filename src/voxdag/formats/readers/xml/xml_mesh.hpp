@@ -26,8 +26,6 @@ class InstancedMesh {
   void add_vertex(Vec3d position);
   /// Adds a triangle of the copy's vertices, which exist. Turns it if the transform mirrors.
   void add_triangle(Triangle corners, std::uint32_t material);
-  /// Returns whether the transform of the copy mirrors.
-  bool is_mirrored() const { return is_mirrored_; }
 
   /// Returns the mesh.
   Mesh take() { return std::move(mesh_); }
@@ -40,6 +38,10 @@ class InstancedMesh {
   std::uint32_t first_vertex_ = 0;
   bool is_mirrored_ = false;
 };
+
+/// Removes the next word, up to a blank or a line end, from the text and returns it; empty at the
+/// end.
+std::string_view take_word(std::string_view& text);
 
 /// Parses as many numbers as `values` has. Throws Error without a file, which calls the text
 /// `what`, if there are more or fewer, or if one is not finite.
