@@ -189,7 +189,8 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
     fmt::print("{}", json_text(json_of(report, result.report, seconds)));
   } else if (!session.quiet) {
     fmt::print("{}: {}\n{}{}", arguments.output, human_bytes(report.file_bytes),
-               transform_table(access.transform, arguments.meshes), table_of(report, seconds));
+               transform_table(access.transform, access.custom_of(arguments.meshes.front())),
+               table_of(report, seconds));
     if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
   }
 }

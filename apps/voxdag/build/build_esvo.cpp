@@ -83,9 +83,11 @@ void print_summary(const EsvoReport& report, const EsvoSeconds& seconds,
       "  rate          {} voxels/s\n"
       "  peak memory   {}\n",
       arguments.output, human_bytes(report.file_bytes),
-      transform_table(arguments.access.transform, arguments.meshes), esvo_table(report),
-      human_seconds(seconds.total()), human_seconds(seconds.read), human_seconds(seconds.textures),
-      human_seconds(seconds.build), human_count(rate), human_bytes(peak_resident_bytes()));
+      transform_table(arguments.access.transform,
+                      arguments.access.custom_of(arguments.meshes.front())),
+      esvo_table(report), human_seconds(seconds.total()), human_seconds(seconds.read),
+      human_seconds(seconds.textures), human_seconds(seconds.build), human_count(rate),
+      human_bytes(peak_resident_bytes()));
   if (arguments.stats) fmt::print("\n{}", esvo_level_table(report));
 }
 

@@ -108,7 +108,7 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
     fmt::print("{}", json_text(json_of(report, parts, process.count())));
   } else if (!session.quiet) {
     fmt::print("{}: {}\n{}{}", arguments.output, human_bytes(report.file_bytes),
-               transform_table(job.transform, arguments.meshes),
+               transform_table(job.transform, mesh_custom(job.mesh, job.reading)),
                table_of(report, parts, process.count()));
     if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
   }

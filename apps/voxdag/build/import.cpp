@@ -115,7 +115,8 @@ void import(const ImportArguments& arguments, Session& session) {
             : "",
         with_commas(counts.voxels), with_commas(model.grid().resolution()),
         human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
-        human_seconds(watch.since_start()), transform_table(arguments.transform, arguments.files));
+        human_seconds(watch.since_start()),
+        transform_table(arguments.transform, custom_of(arguments.files.front())));
   }
 }
 

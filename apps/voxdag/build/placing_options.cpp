@@ -65,7 +65,7 @@ void add_margin_options(const Command& command, GridRequest& grid) {
 void add_transform_options(const Command& command, TransformRequest& transform) {
   command.parsed("--up", transform.up, transform_text(&TransformRequest::up), "[FROM:]x|y|z",
                  "Turn the input so that this axis points up. FROM: the one that does in the input "
-                 "(default: z in .stl, .3mf, points and volumes, else y)");
+                 "(default: as a .dae file says; z in .stl, .3mf, points and volumes; else y)");
   command.parsed("--unit", transform.unit, transform_text(&TransformRequest::unit),
                  "[FROM:]mm|cm|m|in|ft",
                  "Unit of the result's coordinates. FROM: that of the input, which is converted "
@@ -89,8 +89,7 @@ std::int64_t parse_resolution(const std::string& text) {
   return kilo ? *n * 1024 : *n;
 }
 
-std::string transform_table(const TransformRequest& transform,
-                            const std::vector<std::string>& files) {
+std::string transform_table(const TransformRequest& transform, const FormatCustom& custom) {
   std::map<std::string, std::string> settings;
   add_settings(transform, settings);
   if (settings.empty()) return "";
@@ -98,12 +97,10 @@ std::string transform_table(const TransformRequest& transform,
   for (const auto& [name, value] : settings)
     if (!name.ends_with("_from"))
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
-  if (!transform.up.empty()) {
-    const int from = custom_of(files.front()).up;
+  if (!transform.up.empty())
     text += settings.contains("up_from")
                 ? fmt::format(" (the input: {})", settings["up_from"])
-                : fmt::format(" (the input: {}, the custom of its format)", "xyz"[from]);
-  }
+                : fmt::format(" (the input: {}, as its file or format has it)", "xyz"[custom.up]);
   return fmt::format("  {:<14}{}\n", "moved", text);
 }
 

@@ -19,8 +19,7 @@ void add_transform_options(const Command& command, TransformRequest& transform);
 std::int64_t parse_resolution(const std::string& text);
 
 /// Returns the lines of a summary that say how the input was moved; empty if it was not.
-std::string transform_table(const TransformRequest& transform,
-                            const std::vector<std::string>& files);
+std::string transform_table(const TransformRequest& transform, const FormatCustom& custom);
 
 /// Returns the files that arguments name: the files with one of `endings` in a folder, by name, and
 /// those that match a pattern with * or ?. Other arguments stay as they are.

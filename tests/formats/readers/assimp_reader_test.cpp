@@ -61,10 +61,14 @@ TEST_F(AssimpReader, ReadsOtherFormatsOnlyWhenAsked) {
 }
 
 TEST_F(AssimpReader, ContentDoesNotReachAnImporterThatItsExtensionHides) {
-  for (const char* name : {"a.dxf", "a", "a.md2"}) {
+  for (const char* name : {"a.dxf", "a.md2"}) {
     write_text(dir_ / name, kCollada);
     EXPECT_NE(reason_of(dir_ / name), "no error") << name;
   }
+  write_text(dir_ / "a", kCollada);  // voxdag's own reader takes it.
+  EXPECT_EQ(reason_of(dir_ / "a"), "no error");
+  write_text(dir_ / "b", kDxf);
+  EXPECT_NE(reason_of(dir_ / "b").find("--format"), std::string::npos);
 }
 
 TEST_F(AssimpReader, KnowsEverySafeFormat) {

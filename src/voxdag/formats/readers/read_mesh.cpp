@@ -42,6 +42,9 @@ MeshWithAppearance read_format(const MeshSource& source, const std::string& exte
     case MeshFormat::kOther:
       break;
   }
+  if (extension.empty())
+    throw source.error(
+        "the content does not tell the format of the mesh: name it, such as --format obj");
   MeshWithAppearance read{read_with_assimp(source, extension), {}, {}};
   if (parts == ReadParts::kMeshAndAppearance) add_plain_materials(source, read);
   return read;
@@ -82,12 +85,10 @@ MeshWithAppearance read(const std::filesystem::path& path, const ReadOptions& op
 }  // namespace
 
 MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension) {
-  std::string ext(extension);
-  std::transform(ext.begin(), ext.end(), ext.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return MeshFormat::kPly;
-  if (bytes.starts_with("glTF")) return MeshFormat::kGltf;
+  const std::string ext = to_lower(extension);
   const std::string_view head = without_byte_order_mark(bytes).substr(0, 65536);
+  if (head.starts_with("ply\n") || head.starts_with("ply\r")) return MeshFormat::kPly;
+  if (bytes.starts_with("glTF")) return MeshFormat::kGltf;
   const std::size_t first = head.find_first_not_of(" \t\r\n");
   if (first != head.npos && head[first] == '{' && head.find("\"asset\"") != head.npos)
     return MeshFormat::kGltf;
@@ -98,7 +99,38 @@ MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension
   if (ext == ".off" || is_off(bytes)) return MeshFormat::kOff;
   if (ext == ".3mf") return MeshFormat::k3mf;
   if (ext == ".dae") return MeshFormat::kCollada;
+  // Other formats are in XML and ZIP, too, so the extension counts if there is one.
+  if (!ext.empty()) return MeshFormat::kOther;
+  if (first != head.npos && head[first] == '<' && head.find("<COLLADA") != head.npos)
+    return MeshFormat::kCollada;
+  if (is_3mf(bytes)) return MeshFormat::k3mf;
   return MeshFormat::kOther;
+}
+
+FormatCustom mesh_custom(const std::filesystem::path& path, const ReadOptions& options) {
+  std::filesystem::path name = path;
+  if (!options.format.empty()) name = "a." + options.format;
+  if (name.extension() == ".gz" || name.extension() == ".zst") name.replace_extension();
+  const std::string ending = to_lower(name.extension().string());
+  if (!ending.empty() && ending != ".dae") return custom_of(ending);
+  const InputFile input(path, options.work);
+  const MappedFile file(input.path(), MappedFile::Access::kSequential);
+  const MeshSource source{file.text(), path.string(), path.parent_path(), &file, options};
+  switch (detect_mesh_format(source.bytes, ending)) {
+    case MeshFormat::kGltf:
+      return custom_of(".glb");
+    case MeshFormat::kStl:
+      return custom_of(".stl");
+    case MeshFormat::k3mf:
+      return custom_of(".3mf");
+    case MeshFormat::kCollada: {
+      FormatCustom custom = custom_of(".dae");
+      custom.up = collada_up_axis(source);
+      return custom;
+    }
+    default:
+      return custom_of(".obj");
+  }
 }
 
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
