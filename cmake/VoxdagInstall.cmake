@@ -49,6 +49,5 @@ configure_package_config_file(
 write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/voxdagConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/voxdagConfig.cmake ${PROJECT_BINARY_DIR}/voxdagConfigVersion.cmake
-              ${PROJECT_SOURCE_DIR}/cmake/FindWebP.cmake
-              ${PROJECT_SOURCE_DIR}/cmake/Findminizip.cmake ${PROJECT_SOURCE_DIR}/cmake/Findzstd.cmake
+              cmake/FindWebP.cmake cmake/Findminizip.cmake cmake/Findzstd.cmake cmake/find_one_library.cmake
         DESTINATION ${package_dir})
