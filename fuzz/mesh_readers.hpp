@@ -32,6 +32,7 @@ inline MeshWithAppearance read_chosen_mesh(std::uint8_t choice, MeshSource sourc
     case 3:
       return finish(read_stl(source, parts));
     case 4:
+      collada_up_axis(source);
       return finish(read_collada(source, parts));
     case 5:
       return finish(read_3mf(source, parts));

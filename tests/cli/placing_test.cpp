@@ -138,9 +138,6 @@ TEST_F(Placing, InputsThatTellTooLittleAreRefused) {
   std::filesystem::create_directory(path("none"));
   expect_failure(run_voxdag({"build", path("none"), "-r", "8", "-o", path("n.vdag")}), 2,
                  "the folder " + path("none") + " has no file that ends in .obj, .ply,");
-  for (const auto& [option, value] : {std::pair("--up", "z"), std::pair("--unit", "mm")})
-    expect_failure(run_voxdag({"build", "-", option, value, "-r", "8", "-o", path("n.vdag")}), 2,
-                   "standard input has no name that tells its up axis and its unit");
 }
 
 TEST_F(Placing, SeveralCloudsAreOne) {

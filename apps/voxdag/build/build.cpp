@@ -135,15 +135,6 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
   check_distinct(arguments.access.outputs, session);
   if (arguments.grid.resolution.has_value() == arguments.grid.voxel_size.has_value())
     throw UsageError("give exactly one of -r/--resolution and --voxel-size");
-  const TransformRequest& transform = arguments.access.transform;
-  const auto needs_custom = [](const std::string& text) {
-    return !text.empty() && text.find(':') == text.npos;
-  };
-  if (arguments.meshes.front() == "-" && arguments.access.format.empty() &&
-      (needs_custom(transform.up) || needs_custom(transform.unit)))
-    throw UsageError(
-        "standard input has no name that tells its up axis and its unit: give --format, or "
-        "--up FROM:TO and --unit FROM:TO");
   if (!arguments.grid.resolution) return;
   const int levels = levels_of(*arguments.grid.resolution);
   arguments.esvo.bake.check_levels(levels);

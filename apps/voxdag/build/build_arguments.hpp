@@ -44,7 +44,7 @@ struct BuildArguments {
 
   /// Returns the line of a summary that says how the meshes were moved; empty if they were not.
   std::string transform_line() const {
-    return transform_table(access.transform, custom_of(meshes.front(), access.format));
+    return transform_table(access.transform, access.custom_of(meshes.front()));
   }
 };
 

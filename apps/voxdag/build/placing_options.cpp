@@ -42,11 +42,11 @@ void add_transform_options(const Command& command, TransformRequest& transform) 
   command.parsed(
       "--up", transform.up, transform_text(&TransformRequest::up), "[FROM:]x|y|z",
       "Turn the input so that this axis points up. FROM: the axis that points up in the input "
-      "(default: z for .stl, .3mf, points and volumes, else y)");
+      "(default: as a .dae or .fbx file says, z for .stl, .3mf, points and volumes, else y)");
   command.parsed(
       "--unit", transform.unit, transform_text(&TransformRequest::unit), "[FROM:]mm|cm|m|in|ft",
       "Unit of the result. FROM: unit of the input, which is converted (default: m for glTF "
-      "and COLLADA, mm for 3MF, else the unit of the result)");
+      "and COLLADA, mm for 3MF, as a .fbx file says, else the unit of the result)");
   command.parsed("--scale", transform.scale, parse_positive, "FACTOR",
                  "Multiply the coordinates, after --unit and --up");
   command.parsed(
@@ -67,7 +67,7 @@ std::string transform_table(const TransformRequest& transform, const FormatCusto
   if (!transform.up.empty())
     text += settings.contains("up_from")
                 ? fmt::format(" (the input: {})", settings["up_from"])
-                : fmt::format(" (the input: {}, the custom of its format)", "xyz"[custom.up]);
+                : fmt::format(" (the input: {}, as its file or format has it)", "xyz"[custom.up]);
   return fmt::format("  {:<14}{}\n", "moved", text);
 }
 

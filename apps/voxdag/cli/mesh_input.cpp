@@ -43,8 +43,7 @@ MeshWithAppearance read_and_check(const std::string& file, bool with_appearance,
   print_warnings(result.warnings, session);
   result.warnings.clear();
   with_file_name(file, [&] {
-    move_mesh(result, InputTransform(access.transform, custom_of(file, access.format)),
-              options.work);
+    move_mesh(result, InputTransform(access.transform, mesh_custom(file, options)), options.work);
   });
   return result;
 }

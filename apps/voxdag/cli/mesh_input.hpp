@@ -30,6 +30,12 @@ struct MeshAccess {
     options.objects = objects;
     options.format = format;
   }
+  /// Returns the up axis and the unit of a mesh's coordinates.
+  FormatCustom custom_of(const std::string& file) const {
+    ReadOptions options;
+    give_rights(options);
+    return mesh_custom(file, options);
+  }
 };
 
 /// Adds --format, --allow-outside and --assimp. `mesh` is the option that names the mesh, if it is

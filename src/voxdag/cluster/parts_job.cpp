@@ -20,6 +20,7 @@
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/core/with_file_name.hpp"
+#include "voxdag/formats/readers/read_mesh.hpp"
 
 namespace voxdag {
 namespace {
@@ -99,7 +100,7 @@ class PartsRun {
                   job.grid,
                   job.reading,
                   job.chunk_bytes,
-                  InputTransform(job.transform, custom_of(job.mesh.string(), job.reading.format))},
+                  InputTransform(job.transform, mesh_custom(job.mesh, job.reading))},
         log_(folder, ranks.rank()) {
     mesh_job_.reading.work = work;
   }

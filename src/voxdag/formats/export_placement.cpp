@@ -7,6 +7,7 @@
 #include "voxdag/algebra/reorient.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/core/io/unpacked_name.hpp"
 #include "voxdag/formats/input_file.hpp"
 
 namespace voxdag {

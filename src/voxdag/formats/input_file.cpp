@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <map>
 #include <memory>
@@ -139,13 +138,6 @@ void unpack_zstd(const fs::path& given, std::string_view bytes, MemoryFile& to) 
 }
 
 }  // namespace
-
-fs::path unpacked_name(const fs::path& name) {
-  std::string ending = name.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".gz" || ending == ".zst" ? fs::path(name).replace_extension() : name;
-}
 
 InputFile::InputFile(const fs::path& given, Work work) : path_(given), name_(given) {
   const int descriptor = given == "-" ? STDIN_FILENO : resolve_output(given).descriptor;

@@ -8,9 +8,6 @@
 
 namespace voxdag {
 
-/// Returns the name without ".gz" or ".zst" at its end, in any case of letters.
-std::filesystem::path unpacked_name(const std::filesystem::path& name);
-
 /// A file that a user names. Its bytes can be opened at path() any number of times while this
 /// object lives. Move-only.
 ///

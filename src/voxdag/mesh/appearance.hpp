@@ -65,7 +65,10 @@ struct TextureImage {
 enum class AlphaMode : std::uint8_t {
   kOpaque,  ///< Alpha is ignored.
   kMask,    ///< Visible where alpha >= alpha_cutoff.
-  kBlend    ///< Translucent. Voxels are opaque, so it is visible where alpha >= kBlendCutoff.
+  /// As kMask, but a colour texture that would be invisible everywhere is opaque: the file does not
+  /// say that its alpha counts.
+  kImpliedMask,
+  kBlend  ///< Translucent. Voxels are opaque, so it is visible where alpha >= kBlendCutoff.
 };
 inline constexpr float kBlendCutoff = 0.1f;
 

@@ -8,6 +8,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/unpacked_name.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/core/number_text.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/mesh/place_vertices.hpp"
@@ -62,7 +63,9 @@ FormatCustom custom_of(const std::string& file_name, const std::string& format) 
   };
   if (is_one_of({".gltf", ".glb", ".dae"})) return {1, "m"};
   if (ending == ".3mf") return {2, "mm"};
-  if (is_one_of({".obj", ".ply", ".off", ".fbx", ".vdb"})) return {};
+  if (is_one_of({".obj", ".ply", ".off", ".fbx", ".3ds", ".blend", ".x", ".x3d", ".lwo", ".ac",
+                 ".b3d", ".ms3d", ".vdb"}))
+    return {};
   return {2, ""};
 }
 

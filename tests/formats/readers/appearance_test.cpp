@@ -93,6 +93,30 @@ TEST_F(ReadAppearance, ColoursMayBeNumbersUpTo255) {
   }
 }
 
+TEST_F(ReadAppearance, PlyColoursHaveTheNamesAndRangesOfOtherPrograms) {
+  const auto ply = [&](const std::string& type, const std::array<std::string, 3>& names,
+                       const std::string& color) {
+    std::string text = "\xEF\xBB\xBFply\nformat ascii 1.0\nelement vertex 3\n";
+    for (const char* axis : {"x", "y", "z"}) text += std::string("property float ") + axis + "\n";
+    for (const std::string& name : names) text += "property " + type + " " + name + "\n";
+    text += "element face 1\nproperty list uchar int vertex_index\nend_header\n";
+    for (const char* point : {"0 0 0 ", "1 0 0 ", "0 1 0 "}) text += point + color + "\n";
+    return read_mesh_with_appearance(write("a.ply", text + "3 0 1 2\n"));
+  };
+  const std::array<std::string, 3> rgb{"red", "green", "blue"};
+  expect_near(ply("uchar", {"Red", "Green", "Blue"}, "255 0 0").appearance.colors[0].color(),
+              {1, 0, 0});
+  const auto to_255 = ply("ushort", rgb, "255 0 51");
+  EXPECT_EQ(to_255.warnings.size(), 1u);
+  expect_near(to_255.appearance.colors[0].color(), {1, 0, srgb_to_linear(0.2f)});
+  const auto to_65535 = ply("ushort", rgb, "65535 0 255");
+  EXPECT_TRUE(to_65535.warnings.empty());
+  expect_near(to_65535.appearance.colors[0].color(), {1, 0, srgb_to_linear(255.0f / 65535)});
+  const auto splats = ply("float", {"f_dc_0", "f_dc_1", "f_dc_2"}, "1.7724539 -1.7724539 0");
+  EXPECT_TRUE(splats.warnings.empty());
+  expect_near(splats.appearance.colors[0].color(), {1, 0, srgb_to_linear(0.5f)});
+}
+
 TEST_F(ReadAppearance, PlyFacesMayNumberTheirTextures) {
   const auto result = read_mesh_with_appearance(write(
       "a.ply",

@@ -98,6 +98,29 @@ TEST_F(AssimpReader, ReadsFbxAndItsColours) {
   EXPECT_EQ(color.z, 1);
 }
 
+TEST_F(AssimpReader, TheUpAxisAndTheUnitAreThoseOfTheFbxFile) {
+  const auto custom_of_file = [&](const std::string& text) {
+    write_text(dir_ / "a.fbx", text);
+    return mesh_custom(dir_ / "a.fbx");
+  };
+  EXPECT_EQ(custom_of_file(kFbx).up, 1);
+  EXPECT_EQ(custom_of_file(kFbx).unit, "cm");
+  const FormatCustom text = custom_of_file(
+      "; FBX 7.4.0 project file\nGlobalSettings:  {\n"
+      "P: \"OriginalUpAxis\", \"int\", \"Integer\", \"\",0\n"
+      "P: \"UpAxis\", \"int\", \"Integer\", \"\",2\r\n"
+      "P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",100\n}\n");
+  EXPECT_EQ(text.up, 2);
+  EXPECT_EQ(text.unit, "m");
+  using namespace std::string_literals;
+  const std::string binary = "Kaydara FBX Binary  \0S\6\0\0\0UpAxisS\3\0\0\0intS\7\0\0\0Integer"s +
+                             "S\0\0\0\0I\2\0\0\0S\17\0\0\0UnitScaleFactor"s +
+                             "S\6\0\0\0doubleS\6\0\0\0NumberS\0\0\0\0D\0\0\0\0\0\0\x59\x40"s;
+  EXPECT_EQ(custom_of_file(binary).up, 2);
+  EXPECT_EQ(custom_of_file(binary).unit, "m");
+  EXPECT_EQ(custom_of_file(binary.substr(0, binary.size() - 4)).unit, "cm");
+}
+
 TEST_F(AssimpReader, IsTheSameInAChildAndInThisProcess) {
   write_text(dir_ / "a.fbx", kFbx);
   ReadOptions any;

@@ -285,6 +285,13 @@ TEST(GltfReader, SkinsPlaceVerticesByTheirJointsInRestPoseAndIgnoreTheirNode) {
   // Joint 0 moves by (0, 0, 10); joint 1 maps p to (1, 0, 20) + 2 (p - (1, 0, 0)).
   EXPECT_EQ(read_text(read_gltf, asset.text()).vertices,
             (StoredVector<Vec3f>{{0, 0, 10}, {1, 0, 20}, {1, 1.5f, 15}, {0, 1, 10}}));
+  Asset elsewhere = asset;  // The joints are outside of the scene, then below a hidden node.
+  elsewhere.json["scenes"][0]["nodes"] = {0};
+  EXPECT_EQ(read_text(read_gltf, elsewhere.text()).vertices[1], (Vec3f{1, 0, 20}));
+  elsewhere.json["nodes"].push_back(
+      {{"children", {1}}, {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}});
+  elsewhere.json["scenes"][0]["nodes"] = {3, 0};
+  EXPECT_EQ(read_text(read_gltf, elsewhere.text()).vertices[1], (Vec3f{1, 0, 20}));
   const auto joints = asset.json["bufferViews"][2]["byteOffset"].get<std::size_t>();
   asset.bytes[joints + 1] = 9;  // A joint without weight may be any.
   EXPECT_EQ(read_text(read_gltf, asset.text()).vertices[0], (Vec3f{0, 0, 10}));
@@ -346,6 +353,18 @@ TEST(GltfReader, UnknownExtensionsAreOneWarningEach) {
   asset.json["extensionsRequired"] = {"KHR_texture_basisu"};  // The shape does not need it.
   EXPECT_EQ(read_all(asset.text()).mesh.triangles.size(), 2u);
   EXPECT_THROW(read_all(asset.text(), ReadParts::kMeshAndAppearance), Error);
+}
+
+TEST(GltfReader, AWrongLengthInTheHeaderIsAWarningIfTheChunksEndWithTheFile) {
+  for (const char* length : {"\0\0\0\0", "\1\0\0\0", "\xFF\xFF\xFF\xFF"}) {
+    std::string glb = square().glb();
+    glb.replace(8, 4, length, 4);
+    const MeshWithAppearance result = read_all(glb);
+    EXPECT_EQ(result.mesh.vertices, kVertices);
+    ASSERT_EQ(result.warnings.size(), 1u);
+    EXPECT_NE(result.warnings[0].find("all chunks are read"), std::string::npos);
+    EXPECT_NE(refusal(read_gltf, glb.substr(0, glb.size() - 1)), "no error");
+  }
 }
 
 TEST(GltfReader, HarmlessFaultsAreRead) {

@@ -121,7 +121,7 @@ TEST_F(ReadMtl, TheAlphaOfAColourTextureIsAMask) {
   write("a.mtl", "newmtl m\nd 1\nmap_Kd a.png\nnewmtl n\nmap_Kd a.png\nd 0.5\n");
   const auto result =
       read("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl m\nf 1 2 3\nusemtl n\nf 1 2 3\n");
-  EXPECT_EQ(result.appearance.materials[0].alpha_mode, AlphaMode::kMask);
+  EXPECT_EQ(result.appearance.materials[0].alpha_mode, AlphaMode::kImpliedMask);
   EXPECT_EQ(result.appearance.materials[0].alpha_cutoff, 0.5f);
   EXPECT_EQ(result.appearance.materials[1].alpha_mode, AlphaMode::kBlend);
 }

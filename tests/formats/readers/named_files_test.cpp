@@ -201,6 +201,15 @@ TEST_F(NamedFilesTest, TheCallerLearnsOfEveryNamedFile) {
               (Files{"a b.png", "b.bin"}));
 }
 
+TEST_F(NamedFilesTest, UrisMayBeNamesAsTheyStandOrHaveAQuery) {
+  std::string buffer;
+  for (const int v : {0, 0, 0, 1, 0, 0, 0, 1, 0}) append(buffer, static_cast<float>(v));
+  write("meshes/my%20b.bin", buffer);
+  write("meshes/a#b?.bin", buffer);
+  for (const char* uri : {"my%20b.bin", "b.bin?v=3", "b.bin#part", "a#b?.bin", "a%23b%3F.bin"})
+    EXPECT_EQ(outcome(gltf(uri)), "0") << uri;
+}
+
 TEST_F(NamedFilesTest, MessagesCutLongNamesAndHaveOneLine) {
   const std::string name = "../" + std::string(5000, 'x');
   const std::string message = outcome(gltf(name));

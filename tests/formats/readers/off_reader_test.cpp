@@ -69,6 +69,14 @@ TEST(OffReader, RowsMayBeDividedOverLinesOtherwise) {
   EXPECT_EQ(colored.vertices, (StoredVector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
+TEST(OffReader, TheFirstWordMayBeMissing) {
+  const auto read = read_off({"3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "mesh", {}, nullptr, {}},
+                             ReadParts::kMesh);
+  EXPECT_EQ(read.mesh.triangles, (StoredVector<Triangle>{{0, 1, 2}}));
+  EXPECT_EQ(read.warnings, std::vector<std::string>{"mesh: the first word, 'OFF', is missing"});
+  EXPECT_NE(refusal(read_off, "3 1.5 0\n").find("does not start with 'OFF'"), std::string::npos);
+}
+
 TEST(OffReader, AListMustEndWithTheLastFace) {
   EXPECT_EQ(refusal(read_off, "OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2 7"),
             "mesh: line 1: the file ends before its last face");

@@ -77,6 +77,17 @@ TEST(StlReader, WordsThatAreMissingDoubledOrSplitAreAWarning) {
   expect_read(start + kTwoFacets, 1);
   expect_read("solid\nendsolid\n" + kTwoFacets.substr(start.size()), 1);
   expect_read(kTwoFacets.substr(start.size()), 1);
+  expect_read(with_all(kTwoFacets, " normal 0 0 1", ""), 1);
+}
+
+TEST(StlReader, AFileMayBeOneLine) {
+  for (const char* name : {"", "a ", "facet normal of life "}) {
+    std::string text = with_all(with_all(kTwoFacets, "a facet of life", name), "\n", " ");
+    EXPECT_TRUE(is_ascii_stl(text)) << text;
+    const auto read = read_bytes(text);
+    EXPECT_EQ(read.mesh.triangles, kTriangles) << text;
+    EXPECT_TRUE(read.warnings.empty()) << text;
+  }
 }
 
 TEST(StlReader, BinaryFilesMayBeginWithSolidAndHaveTrailingBytes) {

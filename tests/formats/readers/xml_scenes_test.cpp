@@ -171,6 +171,28 @@ TEST_F(Threemf, RefusesWhatIsDamagedOrWouldGrow) {
   EXPECT_EQ(memory.used(), 0u);
 }
 
+TEST_F(Threemf, BeamsAreAWarningWithoutTheAppearanceToo) {
+  const std::string model =
+      model_3mf("<object id='1'>" + kMesh3mf + "/></triangles><beamlattice/></mesh></object>",
+                "<item objectid='1'/>");
+  std::vector<std::string> warnings;
+  ReadOptions options;
+  options.warnings = &warnings;
+  read_mesh(write({{"3D/3dmodel.model", model}}), options);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("beamlattice is not read"), std::string::npos);
+}
+
+TEST_F(Threemf, TheContentTellsItWithoutAnExtension) {
+  std::filesystem::rename(
+      write({{"3D/3dmodel.model",
+              model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>",
+                        "<item objectid='1'/>")}}),
+      dir_ / "a");
+  EXPECT_EQ(read_mesh(dir_ / "a").triangles.size(), 1u);
+  EXPECT_EQ(mesh_custom(dir_ / "a").up, 2);
+}
+
 TEST_F(Threemf, NoPrefixIsRead) {
   write({{"3D/3dmodel.model",
           model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>",
@@ -260,6 +282,71 @@ TEST_F(Collada, DiffuseColorsAreReadAndWhatIsLeftOutIsSaid) {
   EXPECT_EQ(material.base_color, (Vec3f{1, 0, 0}));
   ASSERT_EQ(result.warnings.size(), 1u);
   EXPECT_NE(result.warnings[0].find("textures are not read"), std::string::npos);
+}
+
+/// Returns a document whose one triangle has a material with this profile of its effect.
+std::string collada_with_effect(const std::string& effect) {
+  return collada(
+      "<triangles count='1' material='sym'>" + kInput + "<p>0 1 2</p></triangles>",
+      "<node><instance_geometry url='#g'><bind_material><technique_common><instance_material "
+      "symbol='sym' target='#m'/></technique_common></bind_material></instance_geometry></node>",
+      "<library_effects><effect id='e'><profile_COMMON>" + effect +
+          "</profile_COMMON></effect></library_effects><library_materials><material id='m'>"
+          "<instance_effect url='#e'/></material></library_materials>");
+}
+
+TEST_F(Collada, ColorsMayBeParametersHaveThreeNumbersAndBeEmitted) {
+  const auto material_of = [&](const std::string& effect, std::size_t warnings) {
+    const MeshWithAppearance result = read(collada_with_effect(effect));
+    EXPECT_EQ(result.warnings.size(), warnings) << effect;
+    return result.appearance.materials[result.mesh.triangle_materials[0]];
+  };
+  const auto phong = [](const std::string& properties) {
+    return "<technique><phong>" + properties + "</phong></technique>";
+  };
+  const Vec3f red{1, 0, 0}, green{0, 1, 0};
+  EXPECT_EQ(material_of(phong("<diffuse><color>1 0 0</color></diffuse>"), 0).base_color, red);
+  EXPECT_EQ(material_of("<newparam sid='c'><float4>1 0 0 1</float4></newparam>" +
+                            phong("<diffuse><param ref='c'/></diffuse>"),
+                        0)
+                .base_color,
+            red);
+  EXPECT_EQ(material_of(phong("<diffuse><color>1 0</color></diffuse>"), 1).base_color,
+            kDefaultColor);
+  const Material both = material_of(phong("<emission><color>0 1 0 1</color></emission><diffuse>"
+                                          "<color>1 0 0 1</color></diffuse>"),
+                                    0);
+  EXPECT_EQ(both.base_color, red);
+  EXPECT_EQ(both.emission, green);
+  const Material constant = material_of(
+      "<technique><constant><emission><color>0 1 0 1</color></emission></constant></technique>", 0);
+  EXPECT_EQ(constant.base_color + constant.emission, green);
+}
+
+TEST_F(Collada, HolesAreAWarningWithoutTheAppearanceToo) {
+  write_text(dir_ / "a.dae", collada("<polygons count='1'>" + kInput +
+                                         "<ph><p>0 1 2 3</p><h>0 1 2</h></ph></polygons>",
+                                     kNode));
+  std::vector<std::string> warnings;
+  ReadOptions options;
+  options.warnings = &warnings;
+  EXPECT_EQ(read_mesh(dir_ / "a.dae", options).triangles.size(), 2u);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("holes of polygons are not read"), std::string::npos);
+}
+
+TEST_F(Collada, TheFileSaysWhichAxisPointsUp) {
+  const std::string text =
+      collada("<triangles count='1'>" + kInput + "<p>0 1 2</p></triangles>", kNode);
+  for (const char* name : {"a.dae", "a"}) {
+    write_text(dir_ / name, text);
+    EXPECT_EQ(mesh_custom(dir_ / name).up, 2);
+    EXPECT_EQ(mesh_custom(dir_ / name).unit, "m");
+    EXPECT_EQ(read_mesh(dir_ / name).triangles.size(), 1u);
+    std::filesystem::remove(dir_ / name);
+  }
+  write_text(dir_ / "b.dae", "<COLLADA><asset></asset></COLLADA>");
+  EXPECT_EQ(mesh_custom(dir_ / "b.dae").up, 1);
 }
 
 TEST_F(Collada, RefusesWhatIsDamagedOrWouldGrow) {

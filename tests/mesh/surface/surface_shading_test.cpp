@@ -158,6 +158,20 @@ TEST(SurfaceShading, AnOpaqueAlphaChannelIsNone) {
   EXPECT_EQ(SurfaceShading(square.mesh, square.appearance).mean(0, kWhole).coverage, 0);
 }
 
+TEST(SurfaceShading, AnImpliedMaskDoesNotHideAWholeTexture) {
+  Square square;
+  square.material().color_map = square.texture("a.png", 1, 1, 4, {255, 0, 0, 0});
+  square.material().alpha_mode = AlphaMode::kImpliedMask;
+  std::vector<std::string> warnings;
+  const SurfaceShading shading(square.mesh, square.appearance, &warnings);
+  EXPECT_EQ(shading.mean(0, kWhole).coverage, 1);
+  expect_near(shading.mean(0, kWhole).color, {1, 0, 0}, 1e-3f);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("it is opaque"), std::string::npos);
+  square.material().alpha_mode = AlphaMode::kMask;
+  EXPECT_EQ(SurfaceShading(square.mesh, square.appearance).mean(0, kWhole).coverage, 0);
+}
+
 TEST(SurfaceShading, EmissionIsAdded) {
   Square square;
   square.material().base_color = {0.25f, 0.5f, 0};

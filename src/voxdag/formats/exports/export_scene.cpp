@@ -1,12 +1,13 @@
 #include "voxdag/formats/exports/export_scene.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 #include <utility>
 
 #include "voxdag/algebra/reorient.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/unpacked_name.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/export_placement.hpp"
 #include "voxdag/formats/input_file.hpp"
 
@@ -40,9 +41,7 @@ Box3i turned_box(const Box3i& box, const Orientation& orientation, int levels) {
 std::optional<char> up_of(const SceneMetadata& metadata) {
   if (const auto up = metadata.build.find("up"); up != metadata.build.end())
     return up->second == "y" || up->second == "z" ? std::optional(up->second[0]) : std::nullopt;
-  std::string name = unpacked_name(metadata.source.name).string();
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string name = lower_case(unpacked_name(metadata.source.name).string());
   for (const char* ending : {".glb", ".gltf"})
     if (name.ends_with(ending)) return 'y';
   for (const char* ending : {".vox", ".stl", ".3mf", ".las"})

@@ -9,6 +9,7 @@
 
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/unpacked_name.hpp"
 #include "voxdag/formats/export_placement.hpp"
 #include "voxdag/formats/imports/derived_source.hpp"
 #include "voxdag/formats/input_file.hpp"

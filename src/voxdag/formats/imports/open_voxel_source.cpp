@@ -1,9 +1,10 @@
 #include <algorithm>
-#include <cctype>
 #include <string>
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/unpacked_name.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/formats/imports/derived_source.hpp"
 #include "voxdag/formats/imports/file_placement.hpp"
@@ -61,8 +62,7 @@ std::unique_ptr<VoxelSource> open_by_name(const Path& path, std::string name,
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return open_png_slices(path, options.threshold);
   std::string endings;
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  name = lower_case(name);
   for (const SourceFormat& format : kSourceFormats) {
     if (name.ends_with(format.ending)) {
       if (options.threshold && !format.has_threshold)

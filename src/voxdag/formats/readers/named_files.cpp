@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/core/printable.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
 
@@ -45,12 +46,6 @@ bool is_absolute(std::string_view name) {
          name.find("://") != name.npos;
 }
 
-bool differ_in_case_only(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [&](char x, char y) { return lower(x) == lower(y); });
-}
-
 /// Returns the file `folder` / `name` in any letter case; the first by name if there are several,
 /// and an empty path if there is none.
 fs::path in_any_case(const fs::path& folder, const fs::path& name) {
@@ -62,10 +57,11 @@ fs::path in_any_case(const fs::path& folder, const fs::path& name) {
       continue;
     }
     std::string best;
+    const std::string wanted = lower_case(part.native());
     for (fs::directory_iterator at(found.empty() ? "." : found, failed), end; !failed && at != end;
          at.increment(failed)) {
       const std::string each = at->path().filename().string();
-      if (differ_in_case_only(each, part.native()) && (best.empty() || each < best)) best = each;
+      if (lower_case(each) == wanted && (best.empty() || each < best)) best = each;
     }
     if (best.empty()) return {};
     found /= best;

@@ -3,8 +3,9 @@
 ///
 /// Many names were written on another system: with `\`, in quotes, in other letter case, or
 /// absolute. A name that exists as it stands counts; else `\` separates folders, quotes are left
-/// out, and letter case does not matter. If that does not exist either, an absolute path stands for
-/// the file with the same base name in the folder of the file that names it, or of the mesh file.
+/// out, and letter case does not matter. If that does not exist either, a file with the same base
+/// name may stand for it (ByBaseName): in the folder of the file that names it, or of the mesh
+/// file.
 #include <filesystem>
 #include <optional>
 #include <string>

@@ -14,9 +14,9 @@ namespace voxdag {
 /// write slightly more than 1.
 inline float plain_color_scale(float greatest) { return greatest > 1.5f ? 1.0f / 255 : 1.0f; }
 
-/// Returns the warning about colours that plain_color_scale() takes as 0 to 255.
+/// Returns the warning about colours, of floats or of more than 8 bits, that go from 0 to 255.
 inline std::string colors_to_255_warning(const std::string& file) {
-  return file + ": colours have components above 1: they are taken as 0 to 255";
+  return file + ": the components of colours are taken as 0 to 255";
 }
 
 /// Converts a colour in sRGB, 0..1.

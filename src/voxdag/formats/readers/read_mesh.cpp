@@ -4,9 +4,12 @@
 #include <new>
 
 #include "voxdag/core/float_origin.hpp"
+#include "voxdag/core/io/unpacked_name.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/export_placement.hpp"
 #include "voxdag/formats/input_file.hpp"
 #include "voxdag/formats/readers/assimp/assimp_reader.hpp"
+#include "voxdag/formats/readers/assimp/fbx_custom.hpp"
 #include "voxdag/formats/readers/collada/collada_reader.hpp"
 #include "voxdag/formats/readers/gltf/gltf_reader.hpp"
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
@@ -42,6 +45,9 @@ MeshWithAppearance read_format(const MeshSource& source, const std::string& exte
     case MeshFormat::kOther:
       break;
   }
+  if (extension.empty())
+    throw source.error(
+        "the content does not tell the format of the mesh: name it, such as --format obj");
   return read_with_assimp(source, extension, parts);
 }
 
@@ -82,12 +88,10 @@ MeshWithAppearance read(const std::filesystem::path& path, const ReadOptions& op
 }  // namespace
 
 MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension) {
-  std::string ext(extension);
-  std::transform(ext.begin(), ext.end(), ext.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return MeshFormat::kPly;
-  if (bytes.starts_with("glTF")) return MeshFormat::kGltf;
+  const std::string ext = lower_case(extension);
   const std::string_view head = without_byte_order_mark(bytes).substr(0, 65536);
+  if (head.starts_with("ply\n") || head.starts_with("ply\r")) return MeshFormat::kPly;
+  if (bytes.starts_with("glTF")) return MeshFormat::kGltf;
   const std::size_t first = head.find_first_not_of(" \t\r\n");
   if (first != head.npos && head[first] == '{' && head.find("\"asset\"") != head.npos)
     return MeshFormat::kGltf;
@@ -98,7 +102,37 @@ MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension
   if (ext == ".off" || is_off(bytes)) return MeshFormat::kOff;
   if (ext == ".3mf") return MeshFormat::k3mf;
   if (ext == ".dae") return MeshFormat::kCollada;
+  // Other formats are in XML and ZIP, too, so the extension counts if there is one.
+  if (!ext.empty()) return MeshFormat::kOther;
+  if (first != head.npos && head[first] == '<' && head.find("<COLLADA") != head.npos)
+    return MeshFormat::kCollada;
+  if (is_3mf(bytes)) return MeshFormat::k3mf;
   return MeshFormat::kOther;
+}
+
+FormatCustom mesh_custom(const std::filesystem::path& path, const ReadOptions& options) {
+  const std::string ending = lower_case(
+      options.format.empty() ? unpacked_name(path).extension().string() : "." + options.format);
+  if (!ending.empty() && ending != ".dae" && ending != ".fbx") return custom_of(ending);
+  const InputFile input(path, options.work);
+  const MappedFile file(input.path(), MappedFile::Access::kSequential);
+  const MeshSource source{file.text(), path.string(), path.parent_path(), &file, options};
+  if (ending == ".fbx") return fbx_custom(source.bytes);
+  switch (detect_mesh_format(source.bytes, ending)) {
+    case MeshFormat::kGltf:
+      return custom_of(".glb");
+    case MeshFormat::kStl:
+      return custom_of(".stl");
+    case MeshFormat::k3mf:
+      return custom_of(".3mf");
+    case MeshFormat::kCollada: {
+      FormatCustom custom = custom_of(".dae");
+      custom.up = collada_up_axis(source);
+      return custom;
+    }
+    default:
+      return custom_of(".obj");
+  }
 }
 
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {

@@ -5,6 +5,7 @@
 
 #include "voxdag/formats/readers/read_options.hpp"
 #include "voxdag/mesh/appearance.hpp"
+#include "voxdag/mesh/input_transform.hpp"
 
 namespace voxdag {
 
@@ -36,6 +37,11 @@ Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {
 /// ReadOptions::allow_outside is set. memory_bytes() of mesh and appearance stay reserved.
 MeshWithAppearance read_mesh_with_appearance(const std::filesystem::path& path,
                                              const ReadOptions& options = {});
+
+/// Returns the up axis and the unit of a mesh's coordinates: those that the file says (COLLADA),
+/// else the customs of its format. Opens the file only if the extension does not tell them. Throws
+/// Error.
+FormatCustom mesh_custom(const std::filesystem::path& path, const ReadOptions& options = {});
 
 enum class MeshFormat { kObj, kPly, kStl, kGltf, kOff, k3mf, kCollada, kOther };
 

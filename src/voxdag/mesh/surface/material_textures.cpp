@@ -15,7 +15,8 @@ struct TextureKey {
   enum Kind { kColor, kTangentNormals, kHeights, kEither };
   Kind kind = kColor;
   int image = -1, alpha_image = -1;
-  float number = 0;  ///< Colour texture: the least visible alpha. Normals: their scale.
+  float number = 0;         ///< Colour texture: the least visible alpha. Normals: their scale.
+  bool is_implied = false;  ///< AlphaMode::kImpliedMask.
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
 
   // NOLINTNEXTLINE(modernize-use-nullptr): false positive in the generated code
@@ -32,6 +33,7 @@ struct LoadedTexture {
 float least_alpha(const Material& material) {
   switch (material.alpha_mode) {
     case AlphaMode::kMask:
+    case AlphaMode::kImpliedMask:
       return material.alpha_cutoff;
     case AlphaMode::kBlend:
       return kBlendCutoff;
@@ -43,6 +45,8 @@ float least_alpha(const Material& material) {
 bool has_masked_texels(const Texture& texture) {
   return texture.bounds({0, 0}, {1, 1}).lo[3] < 65535;
 }
+
+bool is_invisible(const Texture& texture) { return texture.bounds({0, 0}, {1, 1}).hi[3] == 0; }
 
 class Loader {
  public:
@@ -90,7 +94,13 @@ class Loader {
  private:
   static TextureKey color_key(const Material& material) {
     const TextureUse& use = material.color_map.exists() ? material.color_map : material.alpha_map;
-    TextureKey key{TextureKey::kColor, material.color_map.image, -1, 0, use.wrap_u, use.wrap_v};
+    TextureKey key{TextureKey::kColor,
+                   material.color_map.image,
+                   -1,
+                   0,
+                   material.alpha_mode == AlphaMode::kImpliedMask,
+                   use.wrap_u,
+                   use.wrap_v};
     const float least = least_alpha(material);
     if (least > 0) {
       // If no texel can pass, any threshold above 1 works.
@@ -103,7 +113,7 @@ class Loader {
 
   static TextureKey emission_key(const Material& material) {
     const TextureUse& use = material.emission_map;
-    return {TextureKey::kColor, use.image, -1, 0, use.wrap_u, use.wrap_v};
+    return {TextureKey::kColor, use.image, -1, 0, false, use.wrap_u, use.wrap_v};
   }
 
   static TextureKey normal_key(const Material& material) {
@@ -112,7 +122,7 @@ class Loader {
         material.normal_kind == NormalMapKind::kTangentSpace ? TextureKey::kTangentNormals
         : material.normal_kind == NormalMapKind::kHeights    ? TextureKey::kHeights
                                                              : TextureKey::kEither;
-    return {kind, use.image, -1, material.normal_scale, use.wrap_u, use.wrap_v};
+    return {kind, use.image, -1, material.normal_scale, false, use.wrap_u, use.wrap_v};
   }
 
   void request(const TextureKey& key) {
@@ -181,9 +191,14 @@ class Loader {
         pixels = with_alpha_of(pixels, alpha, options_);
       }
     }
-    if (!pixels.is_empty())
-      loaded.texture = std::make_shared<Texture>(
-          make_color_texture(pixels, key.number, {key.wrap_u, key.wrap_v}, options_));
+    if (pixels.is_empty()) return;
+    const TextureWraps wraps{key.wrap_u, key.wrap_v};
+    loaded.texture =
+        std::make_shared<Texture>(make_color_texture(pixels, key.number, wraps, options_));
+    if (!key.is_implied || !is_invisible(*loaded.texture)) return;
+    loaded.texture = std::make_shared<Texture>(make_color_texture(pixels, 0, wraps, options_));
+    loaded.warnings.push_back(image(key.image).name +
+                              ": its alpha would hide the whole material: it is opaque");
   }
 
   ResolvedMaterial resolve(const Material& material) const {

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/core/printable.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
@@ -62,8 +62,7 @@ class FieldParser {
       if (!bytes || row_bytes > kMaxItems) return std::nullopt;
       field.offset = row_bytes;
       row_bytes += *bytes * field.items;
-      std::transform(field.name.begin(), field.name.end(), field.name.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      field.name = lower_case(field.name);
       if (const std::optional<NpyType> number = parse_npy_type(type)) {
         field.type = *number;
         fields.push_back(std::move(field));

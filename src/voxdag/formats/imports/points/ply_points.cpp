@@ -17,10 +17,6 @@ namespace {
 /// Three coordinates, then three components of a colour if the file has them.
 using Values = std::array<double, 6>;
 
-/// The factor of the first spherical harmonic. The colour of a Gaussian splat is
-/// 0.5 + kHarmonic * f_dc.
-constexpr double kHarmonic = 0.28209479177387814;
-
 class PlyPoints : public VoxelSource {
  public:
   explicit PlyPoints(const std::filesystem::path& path)
@@ -31,12 +27,12 @@ class PlyPoints : public VoxelSource {
     for (const std::string_view axis : {"x", "y", "z"}) columns_.push_back(vertex().find({axis}));
     std::vector<int> color = find_ply_color(vertex());
     const bool is_splat = color.empty();
-    if (is_splat) color = find_ply_scalars(vertex(), {"f_dc_0", "f_dc_1", "f_dc_2"});
+    if (is_splat) color = find_splat_color(vertex());
     if (color.empty()) return;
     columns_.insert(columns_.end(), color.begin(), color.begin() + 3);
     for (std::size_t c = 0; c < 3; ++c)
       color_scales_[c] = is_splat ? kHarmonic : ply_color_scale(type_of(columns_[3 + c]));
-    color_offset_ = is_splat ? 0.5 : 0;
+    color_offset_ = is_splat ? kSplatMiddle : 0;
     if (!is_splat && std::any_of(color.begin(), color.begin() + 3,
                                  [&](int p) { return !is_integer(type_of(p)); }))
       find_color_range();

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
@@ -101,9 +101,7 @@ bool has_decimal_commas(std::string_view line) {
 
 /// Returns which value the name of a column stands for; kValues for another one.
 std::size_t value_of_name(std::string_view name) {
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string lower = lower_case(name);
   constexpr std::string_view kNames[][kValues] = {
       {"x", "y", "z", "r", "g", "b"},
       {"points:0", "points:1", "points:2", "red", "green", "blue"},

@@ -69,6 +69,17 @@ std::uint32_t load_u32(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
+/// Returns whether chunks of a GLB file follow its header, and the last one ends with the bytes.
+bool is_chunk_list(std::string_view bytes) {
+  std::size_t at = 12;
+  while (at < bytes.size() && bytes.size() - at >= 8) {
+    const std::size_t size = load_u32(bytes, at);
+    if (size > bytes.size() - at - 8) return false;
+    at += 8 + size;
+  }
+  return at == bytes.size();
+}
+
 }  // namespace
 
 GltfFile::GltfFile(const MeshSource& source, Warnings& warnings, bool with_appearance)
@@ -85,11 +96,18 @@ GltfFile::GltfFile(const MeshSource& source, Warnings& warnings, bool with_appea
   if (load_u32(bytes, 4) != 2)
     throw source.error_at_byte(
         4, "GLB version " + std::to_string(load_u32(bytes, 4)) + ": only version 2 is read");
-  const std::string_view chunks = bytes.substr(0, load_u32(bytes, 8));
-  if (load_u32(bytes, 8) > bytes.size())
-    throw source.error_at_byte(bytes.size(),
-                               "the file ends before the end that its header states, byte " +
-                                   std::to_string(load_u32(bytes, 8)) + " bytes");
+  const std::uint32_t length = load_u32(bytes, 8);
+  std::string_view chunks = bytes.substr(0, length);
+  if ((length > bytes.size() || !is_chunk_list(chunks)) && is_chunk_list(bytes)) {
+    warnings.add(source.name + ": the header states a length of " + counted(length, "byte") +
+                 ", but the last chunk ends with the file, at byte " +
+                 std::to_string(bytes.size()) + ": all chunks are read");
+    chunks = bytes;
+  } else if (length > bytes.size()) {
+    throw source.error_at_byte(
+        bytes.size(),
+        "the file ends before the end that its header states, byte " + std::to_string(length));
+  }
   const std::size_t json_bytes = load_u32(bytes, 12);
   if (chunks.size() < 20 || json_bytes > chunks.size() - 20 || chunks.substr(16, 4) != "JSON")
     throw source.error_at_byte(12, "the first chunk must be JSON and end inside the file");
@@ -186,8 +204,7 @@ void GltfFile::open_uri(const GltfValue& value, std::string_view uri, Buffer& bu
   }
   if (source_.file == nullptr)
     throw value.error("a buffer must be in the glTF file, in a data URI or in a file beside it");
-  const std::string name = decode_percent(uri);
-  if (name.find('\0') != name.npos) throw value.error("malformed URI");
+  const std::string name = file_name(value, uri);
   const std::filesystem::path path = named_files_.find(
       source_.folder, name, {source_.name, value.path()}, NamedFiles::ByBaseName::kIfAbsolute);
   try {
@@ -196,6 +213,16 @@ void GltfFile::open_uri(const GltfValue& value, std::string_view uri, Buffer& bu
     throw value.error("buffer " + name_in_quotes(name) + ": " + fault.reason());
   }
   buffer.bytes = buffer.file->text();
+}
+
+std::string GltfFile::file_name(const GltfValue& value, std::string_view uri) const {
+  std::string name = decode_percent(uri);
+  if (name.find('\0') != name.npos) throw value.error("malformed URI");
+  // Some programs write names of files as they are, others add a query.
+  const std::string before_query = decode_percent(uri.substr(0, uri.find_first_of("?#")));
+  for (const std::string& each : {name, std::string(uri), before_query})
+    if (named_files_.existing(source_.folder, each, NamedFiles::ByBaseName::kNever)) return each;
+  return name;
 }
 
 GltfValue GltfFile::item(GltfArray array, std::uint64_t index, const GltfValue& user) const {

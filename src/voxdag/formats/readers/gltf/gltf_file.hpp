@@ -46,6 +46,10 @@ class GltfFile {
   /// Returns item `index` of an array. If there is none, throws Error with the place of `user`.
   GltfValue item(GltfArray array, std::uint64_t index, const GltfValue& user) const;
 
+  /// Returns the name of the file that the URI of `value` stands for: the one that exists of the
+  /// decoded URI, the URI as it stands, and the URI without query and fragment, else the first.
+  std::string file_name(const GltfValue& value, std::string_view uri) const;
+
   /// Returns the bytes of the buffer view that `user` refers to, which lie inside their buffer, or
   /// are decoded once (EXT_meshopt_compression). Sets `view` to the buffer view, which has the
   /// stride. Throws Error and OverMemory.

@@ -9,7 +9,7 @@ namespace voxdag {
 namespace {
 
 /// Returns the rotation by a quaternion (x, y, z, w) of any length but zero.
-GltfTransform rotation(std::span<const double, 4> q, const GltfValue& user) {
+AffineTransform rotation(std::span<const double, 4> q, const GltfValue& user) {
   const double length2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (!(length2 > 0) || !std::isfinite(length2))
     throw user.error("the rotation must be a quaternion that is finite and not zero");
@@ -21,16 +21,10 @@ GltfTransform rotation(std::span<const double, 4> q, const GltfValue& user) {
             {0, 0, 0}}}};
 }
 
-/// Returns the root nodes of the shown scene.
-CountedVector<std::uint64_t> find_roots(const GltfFile& file) {
+/// Returns the nodes that are no children.
+CountedVector<std::uint64_t> find_all_roots(const GltfFile& file) {
   const GltfItems& nodes = file.array(GltfArray::kNodes);
   CountedVector<std::uint64_t> roots(file.source().work().memory);
-  const GltfValue default_scene = file.root()["scene"];
-  if (default_scene.exists() || !file.array(GltfArray::kScenes).empty()) {
-    const GltfValue scene = file.item(GltfArray::kScenes, default_scene.whole(0), default_scene);
-    for (const GltfValue node : scene["nodes"].items()) roots.push_back(node.whole());
-    return roots;
-  }
   CountedVector<char> is_child(nodes.size(), 0, CountedAllocator<char>(roots.get_allocator()));
   CancelPoll poll(file.source().work());
   for (const GltfValue node : nodes) {
@@ -42,7 +36,21 @@ CountedVector<std::uint64_t> find_roots(const GltfFile& file) {
   }
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (!is_child[i]) roots.push_back(i);
-  if (!nodes.empty() && roots.empty()) throw file.source().error("nodes form a cycle");
+  return roots;
+}
+
+/// Returns the root nodes of the shown scene.
+CountedVector<std::uint64_t> find_roots(const GltfFile& file) {
+  const GltfValue default_scene = file.root()["scene"];
+  if (default_scene.exists() || !file.array(GltfArray::kScenes).empty()) {
+    CountedVector<std::uint64_t> roots(file.source().work().memory);
+    const GltfValue scene = file.item(GltfArray::kScenes, default_scene.whole(0), default_scene);
+    for (const GltfValue node : scene["nodes"].items()) roots.push_back(node.whole());
+    return roots;
+  }
+  CountedVector<std::uint64_t> roots = find_all_roots(file);
+  if (!file.array(GltfArray::kNodes).empty() && roots.empty())
+    throw file.source().error("nodes form a cycle");
   return roots;
 }
 
@@ -61,8 +69,8 @@ class SceneFinder {
       return std::move(scene_);
     }
     if (!file_.array(GltfArray::kSkins).empty()) scene_.nodes.resize(nodes.size());
-    scene_.is_shown.resize(nodes.size());
-    CountedVector<std::pair<std::uint64_t, GltfTransform>> stack(memory_);
+    scene_.is_placed.resize(nodes.size());
+    CountedVector<PlacedNode> stack(memory_), hidden(memory_);
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, {}});
     CancelPoll poll(file_.source().work());
     while (!stack.empty()) {
@@ -70,16 +78,14 @@ class SceneFinder {
       const auto [index, parent] = stack.back();
       stack.pop_back();
       const GltfValue node = file_.item(GltfArray::kNodes, index, file_.root());
-      if (scene_.is_shown[index]) throw node.error("node is reached twice: nodes must form trees");
-      scene_.is_shown[index] = 1;
-      const GltfTransform transform = parent * node_transform(node);
-      if (!scene_.nodes.empty()) scene_.nodes[index] = transform;
-      if (!node["extensions"]["KHR_node_visibility"]["visible"].boolean(true)) continue;
-      if (node["mesh"].exists()) add_mesh(node, static_cast<std::uint32_t>(index), transform);
-      const GltfItems children = node["children"].items();
-      for (std::size_t i = children.size(); i-- > 0;)
-        stack.push_back({children[i].whole(), transform});
+      if (scene_.is_placed[index]) throw node.error("node is reached twice: nodes must form trees");
+      const AffineTransform transform = place(index, node, parent);
+      const bool is_visible = node["extensions"]["KHR_node_visibility"]["visible"].boolean(true);
+      push_children(node, transform, is_visible ? stack : hidden);
+      if (is_visible && node["mesh"].exists())
+        add_mesh(node, static_cast<std::uint32_t>(index), transform);
     }
+    if (!scene_.nodes.empty()) place_joints(std::move(hidden));
     if (rounded_ > 0)
       warnings.add(file_.source().name + ": " + std::to_string(rounded_) +
                    " matrices whose last row is nearly 0 0 0 1 are taken as if it was");
@@ -87,8 +93,41 @@ class SceneFinder {
   }
 
  private:
+  struct PlacedNode {
+    std::uint64_t index;
+    AffineTransform parent;
+  };
+
+  /// Returns the world transform of a node and keeps it if the asset has skins.
+  AffineTransform place(std::uint64_t index, const GltfValue& node, const AffineTransform& parent) {
+    scene_.is_placed[index] = 1;
+    const AffineTransform transform = parent * node_transform(node);
+    if (!scene_.nodes.empty()) scene_.nodes[index] = transform;
+    return transform;
+  }
+
+  static void push_children(const GltfValue& node, const AffineTransform& transform,
+                            CountedVector<PlacedNode>& stack) {
+    const GltfItems children = node["children"].items();
+    for (std::size_t i = children.size(); i-- > 0;)
+      stack.push_back({children[i].whole(), transform});
+  }
+
+  /// Places the nodes below hidden ones and outside of the scene: joints may be there.
+  void place_joints(CountedVector<PlacedNode> stack) {
+    for (const std::uint64_t root : find_all_roots(file_)) stack.push_back({root, {}});
+    CancelPoll poll(file_.source().work());
+    while (!stack.empty()) {
+      poll.step();
+      const auto [index, parent] = stack.back();
+      stack.pop_back();
+      const GltfValue node = file_.item(GltfArray::kNodes, index, file_.root());
+      if (!scene_.is_placed[index]) push_children(node, place(index, node, parent), stack);
+    }
+  }
+
   /// Returns the transform of a node from its matrix or its translation, rotation and scale.
-  GltfTransform node_transform(const GltfValue& node) {
+  AffineTransform node_transform(const GltfValue& node) {
     const std::vector<double> m = node["matrix"].numbers(16);
     if (m.empty())
       return of_parts(node["translation"].numbers(3), node["rotation"].numbers(4),
@@ -98,16 +137,16 @@ class SceneFinder {
         std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11]), std::abs(m[15] - 1)});
     if (!(off <= kRounding)) throw node.error("the last row of the matrix must be 0 0 0 1");
     if (off > 0) ++rounded_;
-    GltfTransform transform;
+    AffineTransform transform;
     for (std::size_t c = 0; c < 4; ++c)
       transform.columns[c] = {m[4 * c], m[4 * c + 1], m[4 * c + 2]};
     return transform;
   }
 
   /// Returns the transform of a translation, a rotation and a scale, each of which may be empty.
-  static GltfTransform of_parts(std::span<const double> t, std::span<const double> r,
-                                std::span<const double> s, const GltfValue& user) {
-    GltfTransform transform;
+  static AffineTransform of_parts(std::span<const double> t, std::span<const double> r,
+                                  std::span<const double> s, const GltfValue& user) {
+    AffineTransform transform;
     if (!r.empty()) transform = rotation(r.first<4>(), user);
     for (std::size_t axis = 0; axis < s.size(); ++axis)
       transform.columns[axis] = transform.columns[axis] * s[axis];
@@ -115,14 +154,14 @@ class SceneFinder {
     return transform;
   }
 
-  void add_mesh(const GltfValue& node, std::uint32_t index, const GltfTransform& transform) {
+  void add_mesh(const GltfValue& node, std::uint32_t index, const AffineTransform& transform) {
     const std::uint64_t mesh = node["mesh"].whole();
     file_.item(GltfArray::kMeshes, mesh, node);
     const GltfValue instancing = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
     const GltfAccessor* const t = instance_values(instancing, "TRANSLATION", 3);
     const GltfAccessor* const r = instance_values(instancing, "ROTATION", 4);
     const GltfAccessor* const s = instance_values(instancing, "SCALE", 3);
-    const auto add = [&](const GltfTransform& of) {
+    const auto add = [&](const AffineTransform& of) {
       scene_.instances.push_back({static_cast<std::uint32_t>(mesh), index, of});
     };
     const GltfAccessor* const any = t != nullptr ? t : r != nullptr ? r : s;

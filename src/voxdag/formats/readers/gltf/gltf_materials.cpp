@@ -59,13 +59,11 @@ TextureWrap wrap_of(const GltfValue& mode) {
 }
 
 /// Returns the name of an image's file; empty if the image is inside the glTF file. Throws Error.
-std::string file_name_of(const GltfValue& image) {
+std::string file_name_of(const GltfFile& file, const GltfValue& image) {
   std::string unescaped;
   const std::string_view uri = image["uri"].text_view(unescaped);
   if (uri.empty() || uri.starts_with("data:")) return "";
-  std::string name = decode_percent(uri);
-  if (name.find('\0') != name.npos) throw image.error("malformed URI");
-  return name;
+  return file.file_name(image, uri);
 }
 
 class MaterialReader {
@@ -118,7 +116,7 @@ class MaterialReader {
       std::string file_name;
       attempt(
           [&] {
-            file_name = file_name_of(image);
+            file_name = file_name_of(file_, image);
             if (file_name.empty()) return copy_image(image, out);
             const std::filesystem::path& folder = file_.source().folder;
             out.path =
@@ -239,7 +237,7 @@ void read_gltf_materials(const GltfFile& file, const Mesh& mesh, Appearance& app
 void report_gltf_images(const GltfFile& file) {
   if (file.source().options.named_files == nullptr) return;
   for (const GltfValue image : file.array(GltfArray::kImages)) try {
-      const std::string name = file_name_of(image);
+      const std::string name = file_name_of(file, image);
       if (!name.empty()) file.named_files().find(file.source().folder, name, {"", ""});
     } catch (const Error&) {  // The name of the file is unknown.
     }

@@ -53,8 +53,8 @@ void GltfPose::read_joints(const GltfValue& skin) {
     poll.step();
     const std::uint64_t node = joints[j].whole();
     file_.item(GltfArray::kNodes, node, joints[j]);
-    if (!scene_.is_shown[node]) throw joints[j].error("the joint is not in the scene");
-    GltfTransform bind;
+    if (!scene_.is_placed[node]) throw joints[j].error("the joint is in a cycle of nodes");
+    AffineTransform bind;
     if (matrices != nullptr) {
       const std::array<float, 16> m = matrices->floats<16>(j);
       for (std::size_t c = 0; c < 4; ++c)
@@ -115,8 +115,8 @@ void GltfPose::read_influences(const GltfPrimitive& primitive) {
   }
 }
 
-GltfTransform GltfPose::skinned(std::size_t i) const {
-  GltfTransform sum{};
+AffineTransform GltfPose::skinned(std::size_t i) const {
+  AffineTransform sum{};
   sum.columns = {};
   double total = 0;
   for (const Influences& four : influences_) {
@@ -126,7 +126,7 @@ GltfTransform GltfPose::skinned(std::size_t i) const {
       if (!(weights[k] > 0)) continue;
       const auto weight = static_cast<double>(weights[k]);
       total += weight;
-      const GltfTransform& joint = joints_[static_cast<std::size_t>(joints[k])];
+      const AffineTransform& joint = joints_[static_cast<std::size_t>(joints[k])];
       for (std::size_t c = 0; c < 4; ++c)
         sum.columns[c] = sum.columns[c] + joint.columns[c] * weight;
     }

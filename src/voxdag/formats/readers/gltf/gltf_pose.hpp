@@ -41,10 +41,10 @@ class GltfPose {
   };
 
   /// Returns the transform of a vertex.
-  GltfTransform transform(std::size_t i) const {
+  AffineTransform transform(std::size_t i) const {
     return influences_.empty() ? instance_->transform : skinned(i);
   }
-  GltfTransform skinned(std::size_t i) const;
+  AffineTransform skinned(std::size_t i) const;
   Vec3d morphed(std::size_t i, bool is_normal) const;
   void read_joints(const GltfValue& skin);
   void read_influences(const GltfPrimitive& primitive);
@@ -56,9 +56,9 @@ class GltfPose {
   const GltfPrimitive* primitive_ = nullptr;
   bool is_mirroring_ = false;  ///< The node's transform is.
   bool has_skin_ = false;
-  std::uint64_t skin_;                   ///< The skin of `joints_`.
-  CountedVector<GltfTransform> joints_;  ///< From the mesh to the world.
-  CountedVector<double> weights_;        ///< Of the morph targets.
+  std::uint64_t skin_;                     ///< The skin of `joints_`.
+  CountedVector<AffineTransform> joints_;  ///< From the mesh to the world.
+  CountedVector<double> weights_;          ///< Of the morph targets.
   CountedVector<Target> targets_;
   CountedVector<Influences> influences_;
 };

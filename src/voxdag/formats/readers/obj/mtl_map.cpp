@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
 
 namespace voxdag {
 namespace {
 
 bool take_switch(std::string_view& text) {
-  const std::string value = to_lower(next_token(text));
+  const std::string value = lower_case(next_token(text));
   if (value != "on" && value != "off") throw MalformedMtl("-clamp takes on or off");
   return value == "on";
 }
@@ -18,7 +19,7 @@ bool take_switch(std::string_view& text) {
 std::string_view take_options(std::string_view text, MtlMap& map) {
   for (; text.starts_with('-'); text = trim(text)) {
     std::string_view rest = text;
-    const std::string option = to_lower(next_token(rest));
+    const std::string option = lower_case(next_token(rest));
     std::array<float, 3> ignored{};
     if (option == "-s")
       take_numbers(rest, map.scale, 1, "-s takes one to three finite numbers");
@@ -45,13 +46,6 @@ std::string_view take_options(std::string_view text, MtlMap& map) {
 }
 
 }  // namespace
-
-std::string to_lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return out;
-}
 
 std::size_t take_numbers(std::string_view& text, std::span<float> numbers) {
   std::size_t count = 0;

@@ -37,7 +37,4 @@ void take_numbers(std::string_view& text, std::span<float> numbers, std::size_t 
 
 bool all_finite(std::span<const float> numbers);
 
-/// Returns the text with ASCII letters in lower case.
-std::string to_lower(std::string_view text);
-
 }  // namespace voxdag

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/readers/name_table.hpp"
 #include "voxdag/formats/readers/obj/mtl_map.hpp"
 #include "voxdag/formats/readers/obj/obj_lines.hpp"
@@ -43,7 +44,7 @@ class MtlReader::Impl {
           line_number_ += static_cast<std::size_t>(std::count(counted, position, line_end));
           counted = position;
           statement_ = trim(line);
-          const std::string keyword = to_lower(next_token(line));
+          const std::string keyword = lower_case(next_token(line));
           if (keyword == "newmtl")
             start(trim(line));
           else if (material_ != nullptr)
@@ -80,7 +81,7 @@ class MtlReader::Impl {
       material.emission = {1, 1, 1};
     material.alpha_mode = material.alpha_map.exists()   ? AlphaMode::kMask
                           : material.alpha < 1          ? AlphaMode::kBlend
-                          : material.color_map.exists() ? AlphaMode::kMask
+                          : material.color_map.exists() ? AlphaMode::kImpliedMask
                                                         : AlphaMode::kOpaque;
     material_ = nullptr;
   }
@@ -151,7 +152,7 @@ class MtlReader::Impl {
 
   void set_color(std::string_view line, Vec3f& color) {
     std::string_view rest = line;
-    if (const std::string kind = to_lower(next_token(rest)); kind == "spectral" || kind == "xyz")
+    if (const std::string kind = lower_case(next_token(rest)); kind == "spectral" || kind == "xyz")
       throw MalformedMtl("spectral curves and CIEXYZ are not supported");
     std::array<float, 3> kd{};
     const std::size_t count = take_numbers(line, kd);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/readers/named_files.hpp"
 #include "voxdag/formats/readers/obj/mtl_map.hpp"
 #include "voxdag/formats/readers/obj/mtl_reader.hpp"
@@ -33,17 +34,17 @@ void for_each_library(const MeshSource& source, const NamedFiles& files, const N
   };
   for (std::size_t i = 0; i < libraries.size(); ++i) {
     const std::string_view whole = libraries[i];
-    bool is_whole =
+    const bool exists =
         files.existing(source.folder, whole, NamedFiles::ByBaseName::kNever).has_value();
-    std::string_view rest = is_whole ? "" : whole;
-    is_whole = true;
+    std::string_view rest = exists ? "" : whole;
+    bool is_list = false;
     for (std::string_view name; !(name = next_token(rest)).empty();)
-      if (to_lower(name).ends_with(".mtl") ||
+      if (lower_case(name).ends_with(".mtl") ||
           files.existing(source.folder, name, NamedFiles::ByBaseName::kAlways)) {
         find(name);
-        is_whole = false;
+        is_list = true;
       }
-    if (is_whole) find(whole);
+    if (!is_list) find(whole);
   }
 }
 

@@ -48,6 +48,8 @@ class OffReader {
     if (rows_ != Rows::kLines && has_more())
       throw Fault{row_.data(), "the file goes on after its last face"};
     MeshWithAppearance result{std::move(mesh_), {}, {}};
+    if (!has_magic_)
+      result.warnings.push_back(source_.name + ": the first word, 'OFF', is missing");
     if (has_appearance_) add_colors(result);
     return result;
   }
@@ -82,9 +84,12 @@ class OffReader {
   }
   bool has_more() { return !trim(row_).empty() || find_line(); }
 
-  /// Skips the magic word. The counts may be in the same line, even in the same word.
+  /// Skips the magic word. The counts may be in the same line, even in the same word. Without the
+  /// word, the first line must be the counts.
   void read_header() {
     row_ = next_line_of_row();
+    has_magic_ = !are_counts(row_);
+    if (!has_magic_) return;
     const std::string_view magic = row_.substr(0, row_.find("OFF"));
     if (!is_off(row_)) throw Fault{row_.data(), "not an OFF file: it does not start with 'OFF'"};
     row_.remove_prefix(magic.size() + 3);
@@ -98,6 +103,14 @@ class OffReader {
     numbers_before_color_ = has('N') ? 3 : 0;
     numbers_of_vertex_ = 3 + numbers_before_color_ + (has_colors_ ? 4 : 0) + (has('S') ? 2 : 0);
     if (trim(row_).empty()) row_ = next_line_of_row();
+  }
+
+  static bool are_counts(std::string_view row) {
+    std::int64_t number = 0;
+    int numbers = 0;
+    for (std::string_view token; !(token = next_token(row)).empty(); ++numbers)
+      if (!parse_int(token, number) || number < 0) return false;
+    return numbers == 2 || numbers == 3;
   }
 
   std::size_t count(const std::string& what, std::size_t least) {
@@ -233,7 +246,7 @@ class OffReader {
   MemoryReservation memory_;
   std::string_view rest_, row_;  ///< After the line that is read; the rest of that line.
   std::size_t released_ = 0;
-  bool has_colors_ = false;
+  bool has_magic_ = true, has_colors_ = false;
   std::size_t numbers_before_color_ = 0, numbers_of_vertex_ = 3;
   CountedVector<Vec3f> vertex_colors_, face_colors_;  ///< As in the file. Faces: per triangle.
   float greatest_ = 0;                                ///< Of the components of all colours.

@@ -11,8 +11,8 @@ bool is_off(std::string_view bytes);
 /// Reads the first three numbers of each vertex and the vertex indices of each face, one vertex or
 /// face per line. Ignores the rest of the line (normals) and comments from '#' on. If that fails,
 /// reads all numbers as one list, which must end with the last face, and adds a warning. The number
-/// of edges may be missing. Cuts polygons with cut_polygon() and ignores those of fewer than three
-/// corners.
+/// of edges may be missing, and, with a warning, the word OFF before the counts. Cuts polygons with
+/// cut_polygon() and ignores those of fewer than three corners.
 ///
 /// With its appearance: reads the colours of vertices (COFF) and those that three or four numbers
 /// after the indices of a face give; those of faces precede. They are sRGB, 0 to 1 or 0 to 255: see

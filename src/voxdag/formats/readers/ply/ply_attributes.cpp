@@ -22,7 +22,11 @@ void set_slots(PlyColumns& columns, const std::vector<int>& properties, Slot fir
 }
 
 void find_color(const PlyElement& element, PlyColumns& columns) {
-  const std::vector<int> found = find_ply_color(element);
+  std::vector<int> found = find_ply_color(element);
+  if (found.empty()) {
+    found = find_splat_color(element);
+    columns.is_splat = !found.empty();
+  }
   set_slots(columns, found, Slot::kRed);
   columns.color_components = static_cast<int>(found.size());
 }
@@ -50,10 +54,16 @@ Vec2f to_uv(float u, float v) {
   return std::isfinite(u) && std::isfinite(v) ? Vec2f{u, 1 - v} : Vec2f{};
 }
 
+/// Returns whether programs write colours of this type both with its greatest value and with 255 as
+/// white.
+bool is_range_unsure(PlyType type) {
+  return !is_integer(type) || type == PlyType::kInt16 || type == PlyType::kUint16;
+}
+
 }  // namespace
 
 PlyAttributes::PlyAttributes(const MeshSource& source, const PlyHeader& header,
-                             const PlyFields& fields, float float_scale)
+                             const PlyFields& fields, bool to_255)
     : source_(source),
       header_(header),
       vertex_colors_(source.work().memory),
@@ -74,9 +84,12 @@ PlyAttributes::PlyAttributes(const MeshSource& source, const PlyHeader& header,
   for (std::size_t p = 0; p < columns.slots.size(); ++p)
     if (columns.slots[p] >= Slot::kRed && columns.slots[p] <= Slot::kAlpha) {
       const PlyType type = colored.properties[p].type;
-      color_scales_[columns.slots[p]] = is_integer(type) ? ply_color_scale(type) : float_scale;
-      has_float_colors_ |= !is_integer(type);
+      color_scales_[columns.slots[p]] = columns.is_splat ? static_cast<float>(kHarmonic)
+                                        : to_255 && is_range_unsure(type) ? 1.0f / 255
+                                                                          : ply_color_scale(type);
+      if (columns.slots[p] == Slot::kRed) color_type_ = type;
     }
+  if (columns.is_splat) color_offset_ = kSplatMiddle;
 }
 
 void PlyAttributes::resize_vertices(std::size_t count) {
@@ -99,14 +112,21 @@ void PlyAttributes::resize_triangles(std::size_t count) {
 Rgba16 PlyAttributes::color_of(const PlyColumns& columns, const PlyRowValues& row) {
   std::array<float, 4> rgba{0, 0, 0, 1};
   for (std::size_t c = 0; c < static_cast<std::size_t>(columns.color_components); ++c)
-    rgba[c] = row.scalars[c] * color_scales_[c];
-  if (has_float_colors_) {
+    rgba[c] = row.scalars[c] * color_scales_[c] + color_offset_;
+  if (is_range_unsure(color_type_)) {
     const float most = std::max({rgba[0], rgba[1], rgba[2]});
-    float greatest = greatest_float_.load(std::memory_order_relaxed);
-    while (most > greatest && !greatest_float_.compare_exchange_weak(greatest, most)) {
+    float greatest = greatest_.load(std::memory_order_relaxed);
+    while (most > greatest && !greatest_.compare_exchange_weak(greatest, most)) {
     }
   }
   return from_srgb({rgba[0], rgba[1], rgba[2]}, rgba[3]);
+}
+
+bool PlyAttributes::go_to_255() const {
+  if (vertex_.is_splat || face_.is_splat) return false;
+  if (!is_integer(color_type_)) return plain_color_scale(greatest_) != 1;
+  return is_range_unsure(color_type_) && greatest_ > 0 &&
+         greatest_ <= 255 * ply_color_scale(color_type_);
 }
 
 void PlyAttributes::take_vertex(std::size_t index, const PlyRowValues& row) {

@@ -29,7 +29,7 @@ struct PlyColumns {
   std::vector<int> slots;  ///< PlyRowValues::Slot of each property, or -1.
   int texcoord = -1;       ///< Index of the list `texcoord`, or -1.
   int color_components = 0;
-  bool has_normals = false, has_uvs = false;
+  bool has_normals = false, has_uvs = false, is_splat = false;
 
   bool is_used() const { return color_components > 0 || has_normals || has_uvs || texcoord >= 0; }
 };
@@ -37,15 +37,15 @@ struct PlyColumns {
 /// Collects the attributes while the mesh is read. Threads may pass distinct rows concurrently.
 ///
 /// Reads from vertices: `red green blue` with or without `alpha` (or `diffuse_red` ..., `r` ...;
-/// sRGB, integers divided by their type's greatest value, floats 0 to 1 or 0 to 255: see
-/// plain_color_scale()), `nx ny nz`, and `s t`, `u v`, `texture_u
-/// texture_v` or `texture_s texture_t`. Reads from faces: colours if vertices have none, and the
-/// list `texcoord` with two numbers per corner if vertices have no coordinates.
+/// sRGB, in any letter case, integers divided by their type's greatest value, floats 0 to 1 or 0 to
+/// 255), else the colour of Gaussian splats, `nx ny nz`, and `s t`, `u v`, `texture_u texture_v` or
+/// `texture_s texture_t`. Reads from faces: colours if vertices have none, and the list `texcoord`
+/// with two numbers per corner if vertices have no coordinates.
 class PlyAttributes {
  public:
-  /// `float_scale` maps components of colours that are floats to 0..1.
+  /// If `to_255`, components of colours that are floats or 16-bit integers go from 0 to 255.
   PlyAttributes(const MeshSource& source, const PlyHeader& header, const PlyFields& fields,
-                float float_scale);
+                bool to_255);
 
   const PlyColumns& vertex_columns() const { return vertex_; }
   const PlyColumns& face_columns() const { return face_; }
@@ -64,8 +64,9 @@ class PlyAttributes {
 
   /// Counts a face that names a texture that does not exist. It has no texture.
   void count_bad_texture() { bad_textures_.fetch_add(1, std::memory_order_relaxed); }
-  /// Returns the greatest component so far of the colours, if they are floats.
-  float greatest_float() const { return greatest_float_; }
+  /// Returns whether the colours so far, read without `to_255`, go from 0 to 255: floats do if
+  /// plain_color_scale() says so, 16-bit integers if none exceeds 255.
+  bool go_to_255() const;
 
   /// Completes the appearance: corners, materials, the textures. Call it once, at the end. Throws
   /// Error if a texture is outside the file's folder.
@@ -80,8 +81,9 @@ class PlyAttributes {
   const PlyHeader& header_;
   PlyColumns vertex_, face_;
   std::array<float, 4> color_scales_{};  ///< Factors that map the components' type to 0..1.
-  bool has_float_colors_ = false;        ///< A component of the colours is a float.
-  std::atomic<float> greatest_float_{0};
+  float color_offset_ = 0;
+  PlyType color_type_ = PlyType::kUint8;  ///< That of red.
+  std::atomic<float> greatest_{0};        ///< Component of all colours, if their type is in doubt.
   std::atomic<std::size_t> bad_textures_{0};
   CountedVector<Rgba16> vertex_colors_;
   CountedVector<Vec3f> vertex_normals_;

@@ -5,16 +5,25 @@
 #include <string_view>
 #include <vector>
 
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/readers/ply/ply_header.hpp"
+#include "voxdag/formats/readers/text_scan.hpp"
 
 namespace voxdag {
 
-/// Returns the indices of scalar properties by name; empty if one is missing or a list.
+/// The factor of the first spherical harmonic. The colour of a Gaussian splat is
+/// kSplatMiddle + kHarmonic * f_dc, in sRGB.
+inline constexpr double kHarmonic = 0.28209479177387814, kSplatMiddle = 0.5;
+
+/// Returns the indices of scalar properties by name, in any letter case; empty if one is missing or
+/// a list.
 inline std::vector<int> find_ply_scalars(const PlyElement& element,
                                          std::initializer_list<std::string_view> names) {
   std::vector<int> found;
   for (const std::string_view name : names) {
-    const int property = element.find({name});
+    int property = element.find({name});
+    for (std::size_t i = 0; property < 0 && i < element.properties.size(); ++i)
+      if (lower_case(element.properties[i].name) == name) property = static_cast<int>(i);
     if (property < 0 || element.properties[property].count_type) return {};
     found.push_back(property);
   }
@@ -34,6 +43,11 @@ inline std::vector<int> find_ply_color(const PlyElement& element) {
     return found;
   }
   return {};
+}
+
+/// Returns the indices of the colour of Gaussian splats; empty without it.
+inline std::vector<int> find_splat_color(const PlyElement& element) {
+  return find_ply_scalars(element, {"f_dc_0", "f_dc_1", "f_dc_2"});
 }
 
 /// Returns the factor that maps a component of a colour to 0..1.

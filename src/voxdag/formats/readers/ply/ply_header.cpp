@@ -28,7 +28,8 @@ std::optional<PlyType> parse_type(std::string_view name) {
 
 class PlyHeaderParser {
  public:
-  explicit PlyHeaderParser(const MeshSource& source) : source_(source), rest_(source.bytes) {
+  explicit PlyHeaderParser(const MeshSource& source)
+      : source_(source), rest_(without_byte_order_mark(source.bytes)) {
     header_.materials = CountedVector<std::string_view>(source.work().memory);
     header_.textures = CountedVector<std::string_view>(source.work().memory);
   }

@@ -16,19 +16,17 @@ MeshWithAppearance read_ply(const MeshSource& source, ReadParts parts) {
   std::optional<PlyAttributes> attributes;
   MeshWithAppearance result;
   MemoryReservation memory(source.work().memory, 0);
-  const auto read = [&](float float_scale) {
+  const auto read = [&](bool to_255) {
     result.mesh = {};
-    if (parts == ReadParts::kMeshAndAppearance)
-      attributes.emplace(source, header, fields, float_scale);
+    if (parts == ReadParts::kMeshAndAppearance) attributes.emplace(source, header, fields, to_255);
     const PlyBody body{source, header, fields, attributes ? &*attributes : nullptr};
     result.mesh = header.format == PlyFormat::kAscii ? read_ply_ascii(body, memory)
                                                      : read_ply_binary(body, memory);
   };
-  read(1);
+  read(false);
   if (!attributes) return result;
-  const float scale = plain_color_scale(attributes->greatest_float());
-  if (scale != 1) {
-    read(scale);
+  if (attributes->go_to_255()) {
+    read(true);
     result.warnings.push_back(colors_to_255_warning(source.name));
   }
   result.appearance = attributes->finish(result.mesh, result.warnings);

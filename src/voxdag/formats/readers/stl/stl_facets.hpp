@@ -79,12 +79,26 @@ class StlTokens {
     p_ = result;
     return true;
   }
-  /// Skips the rest of the line: the name of a solid.
-  void skip_line() {
-    while (p_ != end_ && *p_ != '\n' && *p_ != '\r') ++p_;
+  /// Skips the name of a solid: the rest of the line, or its part before a facet.
+  void skip_name() {
+    while (p_ != end_ && *p_ != '\n' && *p_ != '\r') {
+      if (is_space(*p_))
+        ++p_;
+      else if (starts_facet())
+        return;
+      else
+        next();
+    }
   }
 
  private:
+  /// Returns whether "facet outer" or "facet normal" and a number follow.
+  bool starts_facet() const {
+    StlTokens ahead = *this;
+    float ignored = 0;
+    return ahead.take("facet") &&
+           (ahead.take("outer") || (ahead.take("normal") && ahead.take_coordinate(0, ignored)));
+  }
   static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
   void skip_space() {
     while (p_ != end_ && is_space(*p_)) ++p_;
@@ -112,8 +126,8 @@ inline std::vector<std::string_view> split_facets(std::string_view text, std::si
 }
 
 /// Calls body(Vec3f) for each corner of a part from split_facets(). Returns how many words "solid"
-/// and "endsolid" are missing or doubled, and how many words such as "end loop" are split. Throws
-/// Fault for text that breaks the grammar otherwise.
+/// and "endsolid" are missing or doubled, how many words such as "end loop" are split, and how many
+/// facets have no normal. Throws Fault for text that breaks the grammar otherwise.
 template <class Body>
 std::size_t parse_stl_text(const MeshSource& source, std::string_view part, bool is_first,
                            bool is_last, const Body& body) {
@@ -146,11 +160,15 @@ std::size_t parse_stl_text(const MeshSource& source, std::string_view part, bool
     if (same_word(token, "facet")) {
       irregular += in_solid ? 0 : 1;
       in_solid = true;
-      expect("normal");
-      for (int i = 0; i < 3; ++i) {  // The normal is unused: some writers put NaN there.
-        if (tokens.next().empty()) throw Fault{token.data(), "the file ends inside a facet"};
+      if (tokens.take("outer")) {
+        ++irregular;
+      } else {
+        expect("normal");
+        for (int i = 0; i < 3; ++i) {  // The normal is unused: some writers put NaN there.
+          if (tokens.next().empty()) throw Fault{token.data(), "the file ends inside a facet"};
+        }
+        expect("outer");
       }
-      expect("outer");
       expect("loop");
       for (int corner = 0; corner < 3; ++corner) {
         expect("vertex");
@@ -163,7 +181,7 @@ std::size_t parse_stl_text(const MeshSource& source, std::string_view part, bool
       const bool starts = !is_split_end && same_word(token, "solid");
       irregular += (starts == in_solid ? 1 : 0) + (is_split_end ? 1 : 0);
       in_solid = starts;
-      tokens.skip_line();
+      tokens.skip_name();
     } else {
       throw Fault{token.data(), std::string("expected ") +
                                     (in_solid ? "'facet' or 'endsolid'" : "'solid'") + ", not " +

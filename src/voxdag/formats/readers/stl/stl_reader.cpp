@@ -277,9 +277,9 @@ bool is_exact_binary_stl(std::string_view bytes) {
 bool is_ascii_stl(std::string_view bytes) {
   StlTokens tokens(without_byte_order_mark(bytes).substr(0, 4096));
   const std::string_view first = tokens.next();
-  if (same_word(first, "facet")) return same_word(tokens.next(), "normal");
+  if (same_word(first, "facet")) return tokens.take("normal") || tokens.take("outer");
   if (!same_word(first, "solid")) return false;
-  tokens.skip_line();
+  tokens.skip_name();
   const std::string_view word = tokens.next();
   return same_word(word, "facet") || same_word(word, "endsolid");
 }
@@ -302,8 +302,8 @@ MeshWithAppearance read_stl(const MeshSource& source, ReadParts parts) {
     const std::size_t words = std::accumulate(irregular.begin(), irregular.end(), std::size_t{0});
     if (words > 0)
       read.warnings.push_back(source.name + ": " + counted(words, "keyword") +
-                              " missing, doubled or split: 'solid', 'endsolid', 'endloop' or "
-                              "'endfacet'");
+                              " missing, doubled or split: 'solid', 'endsolid', 'normal', "
+                              "'endloop' or 'endfacet'");
   } else {
     const std::string_view facets = find_facets(source, read.warnings);
     const std::vector<std::string_view> texts = split_binary(facets);

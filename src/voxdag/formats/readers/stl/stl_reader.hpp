@@ -13,7 +13,7 @@ namespace voxdag {
 ///
 /// Adds one warning: about bytes after the last facet; about a count of 0 or 2^32 - 1 in the header
 /// of a file whose size fits another count, which is taken; about ascii words "solid" and
-/// "endsolid" that are missing or doubled, and split ones such as "end loop".
+/// "endsolid" that are missing or doubled, split ones such as "end loop", and missing normals.
 ///
 /// With its appearance: reads the colours of the facets of binary files. They are VisCAM's (bit 15
 /// set; 5 bits each of red, green, blue from bit 14 down), or, if the header has "COLOR=" and RGBA,

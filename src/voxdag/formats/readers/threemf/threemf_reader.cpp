@@ -22,7 +22,7 @@ using ResourceId = std::pair<std::string, std::string>;
 
 struct Reference3mf {
   ResourceId object;
-  GltfTransform transform;
+  AffineTransform transform;
 };
 
 /// A triangle and the materials of its corners.
@@ -60,7 +60,8 @@ struct Archive3mf {
   std::set<std::string> parts;         ///< The models that others name.
   std::vector<std::string> unread;     ///< Those of them that are not read yet.
   std::vector<Material> materials{1};  ///< The first one is that of triangles without.
-  std::set<std::string> left_out;      ///< Kinds of properties.
+  /// Kinds of elements that are not read: of the shape, and of its colours.
+  std::set<std::string> left_out_shapes, left_out_colors;
 };
 
 double millimetres_of(std::string_view unit) {
@@ -72,8 +73,8 @@ double millimetres_of(std::string_view unit) {
   throw Error("has the unknown unit " + in_quotes(unit));
 }
 
-GltfTransform item_transform_of(std::string_view text) {
-  GltfTransform transform;
+AffineTransform item_transform_of(std::string_view text) {
+  AffineTransform transform;
   if (text.empty()) return transform;
   std::array<double, 12> m;
   parse_exact_numbers(text, m, "transform");
@@ -149,7 +150,7 @@ class ModelHandler : public XmlHandler {
     std::string id(attributes["objectid"]);
     archive_.count_entry(path.size() + id.size());
     if (archive_.parts.insert(path).second) archive_.unread.push_back(path);
-    GltfTransform transform = item_transform_of(attributes["transform"]);
+    AffineTransform transform = item_transform_of(attributes["transform"]);
     transform.columns[3] = unit_.point(transform.columns[3]);  // Vertices are scaled, too.
     return {{std::move(path), std::move(id)}, transform};
   }
@@ -202,14 +203,16 @@ class ModelHandler : public XmlHandler {
       material.name = attributes["name"];
       const std::string_view text = attributes[name == "base" ? "displaycolor" : "color"];
       const std::optional<Vec3f> color = property_color_of(text);
-      if (!color && !text.empty()) archive_.left_out.insert("colours that are not #RRGGBB");
+      if (!color && !text.empty()) archive_.left_out_colors.insert("colours that are not #RRGGBB");
       material.base_color = color.value_or(kDefaultColor);
       archive_.count_entry(material.name.size());
       archive_.materials.push_back(std::move(material));
       ++group_->count;
     } else if (name == "texture2dgroup" || name == "compositematerials" ||
-               name == "multiproperties" || name == "beamlattice") {
-      archive_.left_out.emplace(name);
+               name == "multiproperties") {
+      archive_.left_out_colors.emplace(name);
+    } else if (name == "beamlattice") {
+      archive_.left_out_shapes.emplace(name);
     }
   }
 
@@ -217,7 +220,7 @@ class ModelHandler : public XmlHandler {
   std::string part_;
   Archive3mf& archive_;
   bool is_root_;
-  GltfTransform unit_;
+  AffineTransform unit_;
   Object3mf* object_ = nullptr;
   std::string default_group_;           ///< Of the object.
   std::uint32_t default_material_ = 0;  ///< Of the object.
@@ -257,6 +260,7 @@ class ThreemfReader {
     result.mesh = mesh.take();
     for (const Material& material : archive_.materials)
       result.mesh.materials.push_back(material.name);
+    warn_of(archive_.left_out_shapes, result);
     if (parts == ReadParts::kMeshAndAppearance) add_appearance(result);
     return result;
   }
@@ -309,26 +313,29 @@ class ThreemfReader {
       find_instances({component.object, reference.transform * component.transform}, depth + 1);
   }
 
-  static void add(InstancedMesh& mesh, const Object3mf& object, const GltfTransform& transform) {
+  static void add(InstancedMesh& mesh, const Object3mf& object, const AffineTransform& transform) {
     mesh.begin_instance(transform);
     for (const Vec3d vertex : object.vertices) mesh.add_vertex(vertex);
     for (const ObjectTriangle& t : object.triangles) mesh.add_triangle(t.corners, t.materials[0]);
   }
 
+  void warn_of(const std::set<std::string>& left_out, MeshWithAppearance& result) const {
+    for (const std::string& kind : left_out)
+      result.warnings.push_back(source_.name + ": " + kind + " is not read");
+  }
+
   void add_appearance(MeshWithAppearance& result) {
     result.appearance.materials = archive_.materials;
-    for (const std::string& kind : archive_.left_out)
-      result.warnings.push_back(source_.name + ": " + kind + " is not read");
+    warn_of(archive_.left_out_colors, result);
     if (!has_gradients_) return;
     // Corners have the colours, so that materials must not tint them.
     const MemoryReservation memory(source_.work().memory, 3 * triangles_ * sizeof(Rgba16));
     result.appearance.colors.reserve(3 * triangles_);
     for (const auto& [object, transform] : instances_) {
-      const auto& [x, y, z, origin] = transform.columns;
-      const bool is_mirrored = dot(cross(x, y), z) < 0;
       for (const ObjectTriangle& t : object->triangles)
-        for (const std::size_t corner : is_mirrored ? std::array<std::size_t, 3>{0, 2, 1}
-                                                    : std::array<std::size_t, 3>{0, 1, 2})
+        for (const std::size_t corner : transform.is_mirroring()
+                                            ? std::array<std::size_t, 3>{0, 2, 1}
+                                            : std::array<std::size_t, 3>{0, 1, 2})
           result.appearance.colors.push_back(
               to_rgba16(archive_.materials[t.materials[corner]].base_color, 1));
     }
@@ -337,12 +344,19 @@ class ThreemfReader {
 
   const MeshSource& source_;
   Archive3mf archive_;
-  CountedVector<std::pair<const Object3mf*, GltfTransform>> instances_;
+  CountedVector<std::pair<const Object3mf*, AffineTransform>> instances_;
   std::uint64_t references_ = 0, vertices_ = 0, triangles_ = 0;
   bool has_gradients_ = false;
 };
 
 }  // namespace
+
+bool is_3mf(std::string_view bytes) {
+  constexpr std::size_t kMaxDirectory = 65536;  // The end of it, with the names of the parts.
+  return bytes.starts_with("PK\3\4") &&
+         bytes.substr(bytes.size() - std::min(bytes.size(), kMaxDirectory)).find(".model") !=
+             bytes.npos;
+}
 
 MeshWithAppearance read_3mf(const MeshSource& source, ReadParts parts) {
   return ThreemfReader(source).read(parts);

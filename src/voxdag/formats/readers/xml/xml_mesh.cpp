@@ -23,12 +23,11 @@ InstancedMesh::InstancedMesh(const MeshSource& source, std::uint64_t vertices,
   mesh_.triangle_materials.reserve(triangles);
 }
 
-void InstancedMesh::begin_instance(const GltfTransform& transform) {
+void InstancedMesh::begin_instance(const AffineTransform& transform) {
   source_.work().poll();
   transform_ = transform;
   first_vertex_ = static_cast<std::uint32_t>(mesh_.vertices.size());
-  const auto& [x, y, z, origin] = transform.columns;
-  is_mirrored_ = dot(cross(x, y), z) < 0;
+  is_mirrored_ = transform.is_mirroring();
 }
 
 void InstancedMesh::add_vertex(Vec3d position) {
@@ -46,10 +45,7 @@ void InstancedMesh::add_triangle(Triangle corners, std::uint32_t material) {
   source_.count_work(sizeof corners);
 }
 
-namespace {
-
-/// Removes the next token, which line ends end, too.
-std::string_view take_token(std::string_view& text) {
+std::string_view take_word(std::string_view& text) {
   const auto is_gap = [](char c) { return is_blank(c) || c == '\n'; };
   while (!text.empty() && is_gap(text.front())) text.remove_prefix(1);
   std::size_t size = 0;
@@ -59,23 +55,21 @@ std::string_view take_token(std::string_view& text) {
   return token;
 }
 
-}  // namespace
-
 void parse_exact_numbers(std::string_view text, std::span<double> values, const char* what) {
   const auto fail = [&](const std::string& reason) {
     throw Error(std::string(what) + " must have " + std::to_string(values.size()) +
                 " finite numbers: " + reason);
   };
   for (double& value : values) {
-    const std::string_view token = take_token(text);
+    const std::string_view token = take_word(text);
     if (token.empty()) fail("it has fewer");
     if (!parse_float(token, value) || !std::isfinite(value)) fail("not " + in_quotes(token));
   }
-  if (!take_token(text).empty()) fail("it has more");
+  if (!take_word(text).empty()) fail("it has more");
 }
 
 std::uint32_t take_index(std::string_view& text, std::uint64_t end, const char* what) {
-  const std::string_view token = take_token(text);
+  const std::string_view token = take_word(text);
   std::int64_t value = 0;
   if (!parse_int(token, value) || value < 0 || static_cast<std::uint64_t>(value) >= end)
     throw Error(std::string(what) + " " + in_quotes(token) + " is no whole number from 0 to " +

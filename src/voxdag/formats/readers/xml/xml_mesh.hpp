@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "voxdag/formats/readers/gltf/gltf_instances.hpp"
+#include "voxdag/formats/readers/affine_transform.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
 #include "voxdag/mesh/appearance.hpp"
 
@@ -21,13 +21,11 @@ class InstancedMesh {
   InstancedMesh(const MeshSource& source, std::uint64_t vertices, std::uint64_t triangles);
 
   /// Starts a copy: triangles count their vertices from here.
-  void begin_instance(const GltfTransform& transform);
+  void begin_instance(const AffineTransform& transform);
   /// Adds a vertex of the copy. Throws Error if it is not finite.
   void add_vertex(Vec3d position);
   /// Adds a triangle of the copy's vertices, which exist. Turns it if the transform mirrors.
   void add_triangle(Triangle corners, std::uint32_t material);
-  /// Returns whether the transform of the copy mirrors.
-  bool is_mirrored() const { return is_mirrored_; }
 
   /// Returns the mesh.
   Mesh take() { return std::move(mesh_); }
@@ -36,10 +34,14 @@ class InstancedMesh {
   const MeshSource& source_;
   MemoryReservation memory_;
   Mesh mesh_;
-  GltfTransform transform_;
+  AffineTransform transform_;
   std::uint32_t first_vertex_ = 0;
   bool is_mirrored_ = false;
 };
+
+/// Removes the next word, up to a blank or a line end, from the text and returns it; empty at the
+/// end.
+std::string_view take_word(std::string_view& text);
 
 /// Parses as many numbers as `values` has. Throws Error without a file, which calls the text
 /// `what`, if there are more or fewer, or if one is not finite.
