@@ -2,6 +2,7 @@
 /// The library's own mesh readers, chosen by a byte.
 #include <cstdint>
 
+#include "voxdag/formats/readers/assimp/fbx_custom.hpp"
 #include "voxdag/formats/readers/collada/collada_reader.hpp"
 #include "voxdag/formats/readers/gltf/gltf_reader.hpp"
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
@@ -33,6 +34,7 @@ inline MeshWithAppearance read_chosen_mesh(std::uint8_t choice, MeshSource sourc
       return finish(read_stl(source, parts));
     case 4:
       collada_up_axis(source);
+      fbx_custom(source.bytes);
       return finish(read_collada(source, parts));
     case 5:
       return finish(read_3mf(source, parts));
