@@ -16,7 +16,9 @@ namespace {
 using Open = std::unique_ptr<voxdag::VoxelSource> (*)(const std::filesystem::path&);
 constexpr Open kReaders[] = {voxdag::open_ply_points, voxdag::open_las_points,
                              voxdag::open_pcd_points, voxdag::open_xyz_points,
-                             voxdag::open_npy_points};
+                             [](const std::filesystem::path& path) {
+                               return voxdag::open_npy_points(path, voxdag::read_npy_start(path));
+                             }};
 
 /// A file in memory.
 class MemoryFile {

@@ -64,7 +64,7 @@ fi
 
 if [ "$extended" = yes ]; then
   echo "== clang"
-  cmake --preset clang -DVOXDAG_WERROR=ON -DVOXDAG_BUILD_APPS=OFF >/dev/null
+  cmake --preset clang -DVOXDAG_WERROR=ON -DVOXDAG_BUILD_APPS=OFF -DVOXDAG_BUILD_FUZZERS=ON >/dev/null
   cmake --build --preset clang -- -j "$jobs"
 fi
 

@@ -22,7 +22,7 @@ class PlayCanvasOctree {
     data.replace(data.size() - 4, 4, "bin");
     const std::string bytes = read_text(data);
     words_.resize(bytes.size() / 4);
-    std::memcpy(words_.data(), bytes.data(), bytes.size());
+    if (!bytes.empty()) std::memcpy(words_.data(), bytes.data(), bytes.size());
     nodes_ = metadata_["nodeCount"];
     EXPECT_EQ(words_.size(), nodes_ + metadata_["leafDataCount"].get<std::size_t>());
   }

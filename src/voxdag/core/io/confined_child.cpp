@@ -22,6 +22,10 @@
 
 #include "voxdag/core/error.hpp"
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define VOXDAG_SANITIZED 1  // Sanitizers need more memory and system calls of their own.
+#endif
+
 namespace voxdag {
 namespace {
 
@@ -47,10 +51,14 @@ bool confine_system_calls() {
       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
   };
-  for (const std::uint32_t call :
-       {SYS_read, SYS_write, SYS_lseek, SYS_close, SYS_brk, SYS_mmap, SYS_mremap, SYS_munmap,
-        SYS_mprotect, SYS_madvise, SYS_futex, SYS_getrandom, SYS_clock_gettime, SYS_sched_yield,
-        SYS_rt_sigprocmask, SYS_rt_sigreturn, SYS_exit, SYS_exit_group}) {
+  for (const std::uint32_t call : {
+         SYS_read, SYS_write, SYS_lseek, SYS_close, SYS_brk, SYS_mmap, SYS_mremap, SYS_munmap,
+             SYS_mprotect, SYS_madvise, SYS_futex, SYS_getrandom, SYS_clock_gettime,
+             SYS_sched_yield, SYS_rt_sigprocmask, SYS_rt_sigreturn, SYS_exit, SYS_exit_group,
+#if VOXDAG_SANITIZED
+             SYS_sigaltstack, SYS_pipe2,
+#endif
+       }) {
     filter.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, call, 0, 1));
     filter.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
   }
@@ -68,7 +76,7 @@ bool limit(__rlimit_resource resource, std::uint64_t value) {
 
 /// Limits the memory that the process can write to what it has now, and `bytes` more.
 bool limit_memory(std::uint64_t bytes) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if VOXDAG_SANITIZED
   return bytes > 0;  // Shadow memory is larger than any limit.
 #else
   std::ifstream file("/proc/self/statm");  // Pages: size, resident, shared, text, 0, data.

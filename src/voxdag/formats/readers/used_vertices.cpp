@@ -44,7 +44,8 @@ UsedVertices used_vertices(const MeshSource& source, const Mesh& mesh) {
 void remove_bad_triangles(const MeshSource& source, std::uint64_t bad_triangles,
                           MeshWithAppearance& read) {
   if (bad_triangles == 0) return;
-  auto& [mesh, appearance, warnings] = read;
+  Mesh& mesh = read.mesh;
+  Appearance& appearance = read.appearance;
   if (bad_triangles == mesh.triangles.size()) throw source.error(kNoGoodTriangle);
   CancelPoll poll(source.work());
   const auto is_good = [&](std::size_t t) {
@@ -62,7 +63,7 @@ void remove_bad_triangles(const MeshSource& source, std::uint64_t bad_triangles,
     run.first_triangle -= left_out;
   }
   keep(mesh.triangles, 1, is_good);  // Last: the others ask for the triangles.
-  warnings.push_back(bad_triangles_warning(source.name, bad_triangles));
+  read.warnings.push_back(bad_triangles_warning(source.name, bad_triangles));
 }
 
 std::string bad_triangles_warning(const std::string& file, std::uint64_t bad_triangles) {
