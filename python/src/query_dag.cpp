@@ -110,12 +110,15 @@ py::array_t<std::int32_t> heights(const Dag& dag, const std::string& axis, bool 
   return result;
 }
 
-py::array_t<float> distance_field(const Dag& dag, const std::optional<Window>& window) {
+py::array_t<float> distance_field(const Dag& dag, const std::optional<Window>& window,
+                                  bool is_signed) {
   const Box3i box = window_of(dag, window);
   const Vec3<py::ssize_t> size(box.hi - box.lo);
   const auto unit = static_cast<float>(dag.grid().voxel_size);
-  std::vector<float> distances =
-      run_work([&](Work work) { return voxdag::distance_field(dag.view(), box, work); });
+  std::vector<float> distances = run_work([&](Work work) {
+    return is_signed ? signed_distance_field(dag.view(), box, work)
+                     : voxdag::distance_field(dag.view(), box, work);
+  });
   for (float& distance : distances) distance *= unit;
   // The library's x runs fastest, as in Fortran's arrays.
   const py::array_t<float, py::array::f_style> field({size.x, size.y, size.z}, distances.data());
@@ -153,9 +156,11 @@ void add_queries(DagClass& dag) {
            "The coordinate of the last voxel of each column along axis 'x', 'y' or 'z', or of the "
            "first one if low; -1 in empty columns. Returns (N, N) int32, indexed by the other two "
            "axes in the order x, y, z.")
-      .def("distance_field", &distance_field, py::arg("window") = none,
+      .def("distance_field", &distance_field, py::arg("window") = none, py::kw_only(),
+           py::arg("signed") = false,
            "The distances, in world units, from the centres of the window's places to the nearest "
-           "voxel: 0 in voxels, inf without voxels. Returns float32, [x, y, z].")
+           "voxel: 0 in voxels, inf without voxels. signed: negative in voxels, where it is the "
+           "distance to the nearest empty place. Returns float32, [x, y, z].")
       .def(
           "surface", &surface,
           "dict: faces, the numbers of outer faces of voxels across x, y and z; their area and the "

@@ -35,7 +35,7 @@ namespace {
 
 struct QueryArguments {
   std::string points, segments, output;
-  bool count = false, distances = false, area = false, from_low = false;
+  bool count = false, distances = false, is_signed = false, area = false, from_low = false;
   std::optional<int> heights;  ///< Axis.
   std::optional<Box3i> window;
   std::uint64_t memory_limit = 0;
@@ -148,16 +148,21 @@ std::string answer_segments(const QueryArguments& arguments, const DagModel& fil
 
 std::string write_distances(const QueryArguments& arguments, const DagModel& file,
                             MemoryBudget& memory, Session& session) {
-  const Box3i& box = *arguments.window;
+  const auto side = static_cast<std::int32_t>(file.grid().resolution());
+  const Box3i box = arguments.window.value_or(Box3i{{0, 0, 0}, {side, side, side}});
   std::uint64_t places = 1, size[3];
   for (int axis = 0; axis < 3; ++axis) {
     size[axis] = static_cast<std::uint64_t>(std::int64_t{box.hi[axis]} - box.lo[axis]);
     if (places > (std::uint64_t{1} << 40) / size[axis])
-      throw Error("", "", "--window has more than 2^40 places");
+      throw Error("", "",
+                  arguments.window ? "--window has more than 2^40 places"
+                                   : "the grid has more than 2^40 places: give --window");
     places *= size[axis];
   }
   const MemoryReservation field(&memory, places * sizeof(float));
-  std::vector<float> distances = distance_field(file.view(), box, &session.progress);
+  const Work work{&memory, &session.progress};
+  std::vector<float> distances = arguments.is_signed ? signed_distance_field(file.view(), box, work)
+                                                     : distance_field(file.view(), box, work);
   for (float& distance : distances)
     distance = static_cast<float>(static_cast<double>(distance) * file.grid().voxel_size);
   NpyWriter writer(arguments.output, "<f4", {size[1], size[0]}, sizeof(float), size[2]);
@@ -234,7 +239,6 @@ void check_query_arguments(const QueryArguments& arguments, Session& session) {
   if (writes && arguments.output.empty()) throw UsageError("--output", "is required");
   if (!writes && !arguments.output.empty())
     throw UsageError("--output", "has no effect: the answer is printed");
-  if (arguments.distances && !arguments.window) throw UsageError("--distances", "needs --window");
   session.inputs = {arguments.points, arguments.segments};
   check_distinct({{"--output", arguments.output}}, session);
 }
@@ -269,14 +273,21 @@ void add_query_command(const Command& program, Session& session) {
       "--segments", arguments->segments, "S.npy",
       "For each segment (N x 6 float32 or float64, from and to): whether it meets no voxel, and "
       "the first voxel that it meets"));
-  add(command.flag("--distances", arguments->distances,
-                   "For each place of --window: the distance of its centre to the nearest voxel"));
+  const Option distances = add(
+      command.flag("--distances", arguments->distances,
+                   "For each place of --window, or of the grid: the distance of its centre to the "
+                   "nearest voxel"));
   const Option heights = add(command.parsed(
       "--heights", arguments->heights, parse_axis, "AXIS",
       "For each column along x, y or z: the coordinate of its highest voxel, -1 without voxels"));
   add(command.flag("--count", arguments->count, "Count the voxels, or those of --window"));
   add(command.flag("--area", arguments->area,
                    "Measure the volume of the voxels and the area of their surface"));
+  command
+      .flag("--signed", arguments->is_signed,
+            "With --distances: negative in voxels, where it is the distance to the nearest empty "
+            "place")
+      .needs(distances);
   command.flag("--from-low", arguments->from_low, "With --heights: of its lowest voxel")
       .needs(heights);
   command
