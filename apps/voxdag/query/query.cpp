@@ -28,6 +28,7 @@
 #include "voxdag/file/model/scene_model.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/formats/exports/volume_file.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag::cli {
@@ -165,9 +166,16 @@ std::string write_distances(const QueryArguments& arguments, const DagModel& fil
                                                      : distance_field(file.view(), box, work);
   for (float& distance : distances)
     distance = static_cast<float>(static_cast<double>(distance) * file.grid().voxel_size);
-  NpyWriter writer(arguments.output, "<f4", {size[1], size[0]}, sizeof(float), size[2]);
-  writer.write_rows(distances.data(), size[2]);
-  writer.commit();
+  if (is_volume_name(arguments.output)) {
+    VolumeFile volume(arguments.output, arguments.output, file.grid(), box,
+                      VolumeFile::Values::kFloat32);
+    volume.write(distances.data(), distances.size() * sizeof(float));
+    volume.commit();
+  } else {
+    NpyWriter writer(arguments.output, "<f4", {size[1], size[0]}, sizeof(float), size[2]);
+    writer.write_rows(distances.data(), size[2]);
+    writer.commit();
+  }
   return fmt::format("{} x {} x {} distances", size[0], size[1], size[2]);
 }
 
@@ -295,7 +303,9 @@ void add_query_command(const Command& program, Session& session) {
               "The first voxel, and one past the last on each axis")
       .only_if([arguments = arguments.get()] { return arguments->distances || arguments->count; },
                "without --distances or --count");
-  command.text("-o,--output", arguments->output, "OUT.npy", "The array to write");
+  command.text("-o,--output", arguments->output, "OUT.npy",
+               "The array to write; of --distances also a volume: .nrrd, .mha, .mhd, .vti, .nii or "
+               ".nii.gz");
   add_memory_option(command, arguments->memory_limit);
   add_json_option(command, session);
   add_threads_option(command, session);
