@@ -11,6 +11,7 @@
 #include "voxdag/algebra/query/height_map.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/query/surface_area.hpp"
+#include "voxdag/algebra/query/voxel_moments.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
 #include "voxdag/stored/svdag/for_each_voxel.hpp"
@@ -125,6 +126,26 @@ py::array_t<float> distance_field(const Dag& dag, const std::optional<Window>& w
   return Array<float>::ensure(field);
 }
 
+py::tuple tuple_of(Vec3d v) { return py::make_tuple(v.x, v.y, v.z); }
+
+VoxelMoments moments(const Dag& dag) {
+  return run_work([&](Work work) { return moments_of(dag.view(), work); });
+}
+
+py::object bounds(const Dag& dag) {
+  const VoxelMoments found = moments(dag);
+  if (found.voxels == 0) return py::none();
+  const Grid& grid = dag.grid();
+  return py::make_tuple(tuple_of(grid.to_world(Vec3d(found.bounds.lo))),
+                        tuple_of(grid.to_world(Vec3d(found.bounds.hi))));
+}
+
+py::object centre(const Dag& dag) {
+  const VoxelMoments found = moments(dag);
+  if (found.voxels == 0) return py::none();
+  return tuple_of(dag.grid().to_world(found.centre));
+}
+
 py::dict surface(const Dag& dag) {
   const VoxelSurface found = run_work([&](Work work) { return surface_of(dag.view(), work); });
   const double unit = dag.grid().voxel_size;
@@ -139,6 +160,18 @@ py::dict surface(const Dag& dag) {
 
 void add_queries(DagClass& dag) {
   const auto none = py::none();
+  dag.def_property_readonly("bounds", &bounds,
+                            "The box of the voxels in world units: ((x0, y0, z0), (x1, y1, z1)); "
+                            "None without voxels.")
+      .def_property_readonly("centre", &centre,
+                             "The centre of mass of the voxels in world units; None without voxels.")
+      .def_property_readonly(
+          "volume",
+          [](const Dag& d) {
+            return static_cast<double>(d.model().metadata().counts.voxels) *
+                   std::pow(d.grid().voxel_size, 3);
+          },
+          "The volume of the voxels, in cubes of the world unit.");
   dag.def("contains", &contains, py::arg("points"),
           "Whether points (N, 3), in world units, lie in voxels. Returns (N,) bool.")
       .def("nearest", &nearest, py::arg("points"),

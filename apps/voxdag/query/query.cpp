@@ -20,6 +20,7 @@
 #include "voxdag/algebra/query/height_map.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/query/surface_area.hpp"
+#include "voxdag/algebra/query/voxel_moments.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/float_origin.hpp"
 #include "voxdag/core/io/process_memory.hpp"
@@ -210,17 +211,29 @@ void print_count(const QueryArguments& arguments, const DagModel& file, MemoryBu
 
 void print_area(const DagModel& file, MemoryBudget& memory, Session& session) {
   const VoxelSurface surface = surface_of(file.view(), {&memory, &session.progress});
+  const VoxelMoments moments = moments_of(file.view(), {&memory, &session.progress});
+  const Vec3d centre = file.grid().to_world(moments.centre),
+              lo = file.grid().to_world(Vec3d(moments.bounds.lo)),
+              hi = file.grid().to_world(Vec3d(moments.bounds.hi));
   const double side = file.grid().voxel_size;
   const double volume = static_cast<double>(surface.voxels) * side * side * side,
                area = static_cast<double>(surface.all_faces()) * side * side;
   session.bar.clear();
   if (session.json) {
-    const nlohmann::ordered_json json = {
-        {"voxels", surface.voxels}, {"volume", volume}, {"faces", surface.faces}, {"area", area}};
+    const nlohmann::ordered_json json = {{"voxels", surface.voxels},
+                                         {"volume", volume},
+                                         {"faces", surface.faces},
+                                         {"area", area},
+                                         {"centre", {centre.x, centre.y, centre.z}},
+                                         {"bounds", {lo.x, lo.y, lo.z, hi.x, hi.y, hi.z}}};
     fmt::print("{}", json_text(json));
   } else {
-    fmt::print("{}: {} voxels, volume {:.9g}; {} faces, area {:.9g}\n", session.subject,
-               with_commas(surface.voxels), volume, with_commas(surface.all_faces()), area);
+    fmt::print(
+        "{}: {} voxels, volume {:.9g}; {} faces, area {:.9g}\n"
+        "  centre of mass {:.9g}, {:.9g}, {:.9g}; bounds {:.9g}, {:.9g}, {:.9g} to {:.9g}, {:.9g}, "
+        "{:.9g}\n",
+        session.subject, with_commas(surface.voxels), volume, with_commas(surface.all_faces()),
+        area, centre.x, centre.y, centre.z, lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
   }
 }
 
@@ -289,8 +302,10 @@ void add_query_command(const Command& program, Session& session) {
       "--heights", arguments->heights, parse_axis, "AXIS",
       "For each column along x, y or z: the coordinate of its highest voxel, -1 without voxels"));
   add(command.flag("--count", arguments->count, "Count the voxels, or those of --window"));
-  add(command.flag("--area", arguments->area,
-                   "Measure the volume of the voxels and the area of their surface"));
+  add(command.flag(
+      "--area", arguments->area,
+      "Measure the volume of the voxels, the area of their surface, their centre of mass and their "
+      "bounds"));
   command
       .flag("--signed", arguments->is_signed,
             "With --distances: negative in voxels, where it is the distance to the nearest empty "
