@@ -6,6 +6,7 @@
 #include "run_work.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/file/model/written_by.hpp"
 
 namespace py = pybind11;
 
@@ -92,6 +93,7 @@ PYBIND11_MODULE(_voxdag, module) {
         array.attr("setflags")(py::arg("write") = false);
         return array;
       });
+  module.attr("__version__") = written_by().substr(std::string("voxdag ").size());
   add_makers(module);
   add_rays(dag);
   add_queries(dag);

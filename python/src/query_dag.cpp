@@ -11,6 +11,7 @@
 #include "voxdag/algebra/query/height_map.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/query/surface_area.hpp"
+#include "voxdag/algebra/query/voxel_moments.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
 #include "voxdag/stored/svdag/for_each_voxel.hpp"
@@ -110,16 +111,39 @@ py::array_t<std::int32_t> heights(const Dag& dag, const std::string& axis, bool 
   return result;
 }
 
-py::array_t<float> distance_field(const Dag& dag, const std::optional<Window>& window) {
+py::array_t<float> distance_field(const Dag& dag, const std::optional<Window>& window,
+                                  bool is_signed) {
   const Box3i box = window_of(dag, window);
   const Vec3<py::ssize_t> size(box.hi - box.lo);
   const auto unit = static_cast<float>(dag.grid().voxel_size);
-  std::vector<float> distances =
-      run_work([&](Work work) { return voxdag::distance_field(dag.view(), box, work); });
+  std::vector<float> distances = run_work([&](Work work) {
+    return is_signed ? signed_distance_field(dag.view(), box, work)
+                     : voxdag::distance_field(dag.view(), box, work);
+  });
   for (float& distance : distances) distance *= unit;
   // The library's x runs fastest, as in Fortran's arrays.
   const py::array_t<float, py::array::f_style> field({size.x, size.y, size.z}, distances.data());
   return Array<float>::ensure(field);
+}
+
+py::tuple tuple_of(Vec3d v) { return py::make_tuple(v.x, v.y, v.z); }
+
+VoxelMoments moments(const Dag& dag) {
+  return run_work([&](Work work) { return moments_of(dag.view(), work); });
+}
+
+py::object bounds(const Dag& dag) {
+  const VoxelMoments found = moments(dag);
+  if (found.voxels == 0) return py::none();
+  const Grid& grid = dag.grid();
+  return py::make_tuple(tuple_of(grid.to_world(Vec3d(found.bounds.lo))),
+                        tuple_of(grid.to_world(Vec3d(found.bounds.hi))));
+}
+
+py::object centre(const Dag& dag) {
+  const VoxelMoments found = moments(dag);
+  if (found.voxels == 0) return py::none();
+  return tuple_of(dag.grid().to_world(found.centre));
 }
 
 py::dict surface(const Dag& dag) {
@@ -136,6 +160,18 @@ py::dict surface(const Dag& dag) {
 
 void add_queries(DagClass& dag) {
   const auto none = py::none();
+  dag.def_property_readonly("bounds", &bounds,
+                            "The box of the voxels in world units: ((x0, y0, z0), (x1, y1, z1)); "
+                            "None without voxels.")
+      .def_property_readonly("centre", &centre,
+                             "The centre of mass of the voxels in world units; None without voxels.")
+      .def_property_readonly(
+          "volume",
+          [](const Dag& d) {
+            return static_cast<double>(d.model().metadata().counts.voxels) *
+                   std::pow(d.grid().voxel_size, 3);
+          },
+          "The volume of the voxels, in cubes of the world unit.");
   dag.def("contains", &contains, py::arg("points"),
           "Whether points (N, 3), in world units, lie in voxels. Returns (N,) bool.")
       .def("nearest", &nearest, py::arg("points"),
@@ -153,9 +189,11 @@ void add_queries(DagClass& dag) {
            "The coordinate of the last voxel of each column along axis 'x', 'y' or 'z', or of the "
            "first one if low; -1 in empty columns. Returns (N, N) int32, indexed by the other two "
            "axes in the order x, y, z.")
-      .def("distance_field", &distance_field, py::arg("window") = none,
+      .def("distance_field", &distance_field, py::arg("window") = none, py::kw_only(),
+           py::arg("signed") = false,
            "The distances, in world units, from the centres of the window's places to the nearest "
-           "voxel: 0 in voxels, inf without voxels. Returns float32, [x, y, z].")
+           "voxel: 0 in voxels, inf without voxels. signed: negative in voxels, where it is the "
+           "distance to the nearest empty place. Returns float32, [x, y, z].")
       .def(
           "surface", &surface,
           "dict: faces, the numbers of outer faces of voxels across x, y and z; their area and the "

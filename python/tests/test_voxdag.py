@@ -437,3 +437,68 @@ def test_other_threads_run_and_ctrl_c_works():
         dag.nearest(points)
     thread.join()
     assert len(ticks) == 5
+
+
+def write_cube(path):
+    path.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in CUBE) +
+                    "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in CUBE_FACES))
+
+
+def test_load_takes_any_file(tmp_path):
+    write_cube(tmp_path / "cube.obj")
+    mesh = voxdag.load(tmp_path / "cube.obj", resolution=16)
+    assert mesh == voxdag.build_mesh(tmp_path / "cube.obj", resolution=16)
+    mesh.save(tmp_path / "cube.vdag")
+    assert voxdag.load(tmp_path / "cube.vdag") == mesh
+    (tmp_path / "p.xyz").write_text("0 0 0\n1 2 3\n")
+    assert voxdag.load(tmp_path / "p.xyz", resolution=8).resolution == 8
+    assert len(voxdag.load(tmp_path / "p.xyz", pitch=1.0)) == 2
+    mesh.export(tmp_path / "points.ply")
+    assert voxdag.load(tmp_path / "points.ply", resolution=16) == mesh
+    mesh.export(tmp_path / "cube.vox")
+    assert voxdag.load(tmp_path / "cube.vox") == mesh
+    assert voxdag.load(tmp_path / "cube.obj", pitch=0.25).voxel_size == 0.25
+    with pytest.raises(OSError, match="none.obj"):
+        voxdag.load(tmp_path / "none.obj")
+
+
+def test_bounds_centre_volume_and_arrays():
+    coords = random_coords(30, 200) + 2
+    dag = voxdag.from_coords(coords, resolution=64, pitch=0.5, origin=(10, 0, -5))
+    low, high = dag.bounds
+    np.testing.assert_allclose(low, np.array([10, 0, -5]) + coords.min(0) * 0.5)
+    np.testing.assert_allclose(high, np.array([10, 0, -5]) + (coords.max(0) + 1) * 0.5)
+    np.testing.assert_allclose(dag.centre, np.array([10, 0, -5]) + (coords.mean(0) + 0.5) * 0.5)
+    assert dag.volume == len(coords) / 8 and dag.shape == (64, 64, 64)
+    np.testing.assert_array_equal(np.asarray(dag), dag.to_dense())
+    empty = dag - dag
+    assert empty.bounds is None and empty.centre is None and empty.volume == 0
+    assert voxdag.__version__.count(".") == 2
+
+
+def test_the_mesh_of_a_dag_encloses_its_voxels():
+    dag = voxdag.from_coords(random_coords(16, 300), resolution=16, pitch=0.25, origin=(3, 4, 5))
+    vertices, faces = dag.to_mesh()
+    assert len(faces) == 2 * sum(dag.surface()["faces"])
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(dag.volume)
+    window = ((0, 0, 0), (8, 16, 16))
+    assert dag.to_mesh(window)[0][:, 0].max() <= 3 + 8 * 0.25
+
+
+def test_signed_distances_are_negative_in_voxels():
+    dag = voxdag.from_dense(np.ones((4, 4, 4), bool))
+    signed = dag.distance_field(((-1, 0, 0), (4, 4, 4)), signed=True)
+    assert signed[0, 0, 0] == 0.5 and signed[1, 1, 1] == -0.5 and signed[2, 1, 1] == -1.5
+    assert (dag.distance_field() == np.maximum(dag.distance_field(signed=True), 0)).all()
+
+
+def test_unknown_arguments_are_answered_with_the_nearest(tmp_path):
+    write_cube(tmp_path / "cube.obj")
+    with pytest.raises(TypeError, match=r"build_mesh\(\) has no argument 'resolutoin': did you mean 'resolution'\?"):
+        voxdag.build_mesh(tmp_path / "cube.obj", resolutoin=8)
+    dag = voxdag.build_mesh(tmp_path / "cube.obj", resolution=8)
+    with pytest.raises(TypeError, match=r"dilate\(\) has no argument 'neighbors': did you mean 'neighbours'\?"):
+        dag.dilate(neighbors=6)
+    with pytest.raises(TypeError, match="incompatible"):
+        dag.dilate("two")

@@ -1,23 +1,85 @@
 """Sparse voxel DAGs: build them from meshes, points and arrays, ask them, cast rays at them.
 
     import voxdag
-    dag = voxdag.build_mesh("bunny.obj", resolution=1024)
+    dag = voxdag.load("bunny.obj", resolution=1024)
     hits = dag.cast(origins, directions)
 
 Coordinates are in world units unless a name says voxel; voxel (i, j, k) is the cube from
 origin + (i, j, k) * voxel_size. Bad arguments raise ValueError, files that cannot be read or written
 OSError, both with the reason in one line.
 """
+import difflib as _difflib
+import functools as _functools
 import os as _os
+import re as _re
 import tempfile as _tempfile
 
 import numpy as _numpy
 
-from ._voxdag import Dag, build_mesh, from_coords, from_dense, import_file, open  # noqa: A004
+from ._voxdag import Dag, __version__  # noqa: F401
 from . import _voxdag
 
 __all__ = ["Dag", "build", "build_mesh", "from_coords", "from_dense", "from_points", "import_file",
-           "open"]
+           "load", "open"]
+
+
+def _checked(function):
+    """Returns the function, which answers unknown keywords with the nearest one that it has."""
+    signature = (function.__doc__ or "").split("\n", 1)[0]  # pybind11: "f(self: Dag, steps: int = 1)"
+    known = [name for name in _re.findall(r"(\w+): ", signature) if name != "self"]
+
+    @_functools.wraps(function)
+    def call(*args, **kwargs):
+        try:
+            return function(*args, **kwargs)
+        except TypeError:
+            for name in kwargs:
+                if known and name not in known:
+                    near = _difflib.get_close_matches(name, known, 1, 0.5)
+                    hint = f": did you mean '{near[0]}'?" if near else f"; it has {', '.join(known)}"
+                    raise TypeError(f"{function.__name__}() has no argument '{name}'{hint}") from None
+            raise
+    return call
+
+
+build_mesh, from_coords, from_dense, import_file, open = map(_checked, (  # noqa: A001
+    _voxdag.build_mesh, _voxdag.from_coords, _voxdag.from_dense, _voxdag.import_file,
+    _voxdag.open))
+for _name in ("cast", "occluded", "coords", "to_dense", "heights", "distance_field", "dilate",
+              "erode", "crop", "shift", "rotate", "components", "keep_components", "export",
+              "render", "save"):
+    setattr(Dag, _name, _checked(getattr(Dag, _name)))
+
+#: Files of points, which need a resolution.
+_POINTS = (".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb", ".las", ".pcd")
+_VOXELS = (".npy", ".binvox", ".nrrd", ".nhdr", ".nii", ".vdb", ".vox")
+
+
+def load(path, *, resolution=1024, **options):
+    """Returns the DAG of any file: opens .vdag files, imports points, voxels and volumes, builds
+    meshes.
+
+    resolution: voxels along the longest side of meshes and points; voxels keep those of the file.
+    options: those of build_mesh() and import_file(), such as colors=True for meshes.
+    """
+    name = _os.fspath(path).lower()
+    for packed in (".gz", ".zst"):
+        name = name.removesuffix(packed)
+    if name.endswith(".vdag"):
+        return open(path, **options)
+    if name.endswith(_POINTS):
+        return import_file(path, **({} if "pitch" in options else {"resolution": resolution}),
+                           **options)
+    if name.endswith(_VOXELS) or _os.path.isdir(path):
+        return import_file(path, **options)
+    if "pitch" not in options:
+        options["resolution"] = resolution
+    try:
+        return build_mesh(path, **options)
+    except OSError as error:
+        if name.endswith(".ply") and "'face' element" in str(error):
+            return import_file(path, **options)
+        raise
 
 
 def _mesh_arrays(mesh):
@@ -96,6 +158,38 @@ def _reduce(dag):
     return _from_bytes, (_file_bytes(dag.save, "dag.vdag"),)
 
 
+def _array(dag, dtype=None, copy=None):
+    """numpy.asarray(dag): to_dense() of the whole grid."""
+    if copy is False:
+        raise ValueError("the array of a Dag is always a copy")
+    dense = dag.to_dense()
+    return dense if dtype is None else dense.astype(dtype)
+
+
+def _to_mesh(dag, window=None):
+    """Returns vertices (N, 3) float64 in world units, and faces (M, 3) int64: two triangles for each
+    outer face of the voxels, counter-clockwise from outside. Vertices are shared within blocks of
+    4³ voxels."""
+    file = _file_bytes(lambda path: dag.export(path, faces=True, colors=False, window=window),
+                       "faces.ply")
+    head, body = file.split(b"end_header\n", 1)
+    head = head.decode()
+    vertices, quads = (int(n) for n in _re.findall(r"element \w+ (\d+)", head))
+    number = "<f8" if "property double x" in head else "<f4"
+    places = _numpy.frombuffer(body, number, 3 * vertices).reshape(-1, 3).astype(float)
+    quad = _numpy.dtype([("count", "u1"), ("corners", "<u4", 4)])
+    rows = _numpy.frombuffer(body, quad, quads, places.size * _numpy.dtype(number).itemsize)
+    corners = rows["corners"].astype(_numpy.int64)
+    return places, corners[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+
+
+def _to_trimesh(dag, window=None):
+    """Returns to_mesh() as a trimesh.Trimesh."""
+    import trimesh
+    vertices, faces = _to_mesh(dag, window)
+    return trimesh.Trimesh(vertices, faces)
+
+
 def _repr(dag):
     info = dag.info
     return (f"<voxdag.Dag of {info['resolution']}³: {info['voxels']:,} voxels of side "
@@ -106,7 +200,11 @@ import builtins as _builtins  # noqa: E402
 
 _io_open = _builtins.open
 Dag._repr_png_ = lambda dag: _file_bytes(dag._write_png, "dag.png")
+Dag.__array__ = _array
 Dag.__reduce__ = _reduce
+Dag.shape = property(lambda dag: (dag.resolution,) * 3, doc="The shape of to_dense().")
+Dag.to_mesh = _to_mesh
+Dag.to_trimesh = _to_trimesh
 Dag.__repr__ = _repr
 Dag.nodes = property(lambda dag: dag._nodes, doc="The nodes, a read-only view: docs/format.md.")
 Dag.leaf_blocks = property(lambda dag: dag._leaf_blocks,

@@ -55,7 +55,8 @@ TEST_F(ExportCommand, UnknownExtensionsAreRefusedWithThoseThatAreKnown) {
   expect_failure(
       run_voxdag({"export", path("in.vdag"), "-o", path("a.fbx")}), 1,
       "a.fbx: cannot export to '.fbx': the extension must be .spc.npy, .npy, .raw, .ply, .glb, "
-      ".obj, .stl, .vox, .binvox, .schem, .voxel.json, .vdb or .nvdb, or .html; a folder ends in "
+      ".obj, .stl, .vox, .binvox, .schem, .voxel.json, .nrrd, .mha, .mhd, "
+      ".vti, .nii, .nii.gz, .vdb or .nvdb, or .html; a folder ends in "
       "/");
   expect_failure(run_voxdag({"export", path("in.vdag"), "-o", path("a.stl"), "--grey"}), 2,
                  "--grey");

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <set>
@@ -199,12 +200,25 @@ TEST_F(Query, DistancesHaveTheShapeOfTheWindow) {
                   voxels().count({x - 2, y, z + 1}) != 0);
 }
 
+TEST_F(Query, SignedDistancesOfTheGridAreNegativeInVoxels) {
+  ASSERT_EQ(query({"--distances", "--signed", "-o", path("field.npy")}).status, 0);
+  const auto side = static_cast<std::size_t>(std::cbrt(
+      static_cast<double>(std::filesystem::file_size(path("field.npy")) / sizeof(float))));
+  const auto rows = rows_of("field.npy", "<f4", {side, side}, 4);
+  for (std::size_t z = 0; z < side; ++z)
+    for (std::size_t y = 0; y < side; ++y)
+      for (std::size_t x = 0; x < side; ++x)
+        EXPECT_EQ(
+            value_at<float>(rows[z], 4 * (side * y + x)) < 0,
+            voxels().count({static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)}) != 0);
+}
+
 TEST_F(Query, WrongQuestionsAreRefused) {
   expect_failure(query({}), 2, "one of --points");
   expect_failure(query({"--points", path("none.npy")}), 2, "--output");
   expect_failure(query({"--points", path("none.npy"), "-o", path("out.npy")}), 1, "none.npy");
   expect_failure(query({"--count", "-o", path("out.npy")}), 2, "the answer is printed");
-  expect_failure(query({"--distances", "-o", path("out.npy")}), 2, "needs --window");
+  expect_failure(query({"--count", "--signed"}), 2, "--signed");
   expect_failure(query({"--count", "--area"}), 2, "");
   expect_failure(query({"--area", "--window", "0,0,0,1,1,1"}), 2, "--window");
   expect_failure(query({"--heights", "w", "-o", path("out.npy")}), 2, "must be x, y or z");

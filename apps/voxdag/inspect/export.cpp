@@ -191,6 +191,7 @@ void add_export_command(const Command& program, Session& session) {
       .text("-o,--output", arguments->output, "OUT",
             "Outer faces: .glb, .obj, .stl, or .ply with --faces. Points: .ply. Voxels: .vox "
             "(MagicaVoxel), .vdb, .nvdb, .binvox, .schem (Minecraft), .voxel.json (PlayCanvas). "
+            "Volumes: .nrrd, .mha, .mhd, .nii, .nii.gz, .vti. "
             "Arrays: .npy (coordinates, or dense with --window), .raw (dense), .spc.npy (kaolin). "
             "With --slices: a folder. Pages that show a DAG: .html (one file, also offline) or "
             "FOLDER/ (with the scene, for any web server)")

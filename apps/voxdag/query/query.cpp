@@ -20,6 +20,7 @@
 #include "voxdag/algebra/query/height_map.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/query/surface_area.hpp"
+#include "voxdag/algebra/query/voxel_moments.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/float_origin.hpp"
 #include "voxdag/core/io/process_memory.hpp"
@@ -28,6 +29,7 @@
 #include "voxdag/file/model/scene_model.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/formats/exports/volume_file.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag::cli {
@@ -35,7 +37,7 @@ namespace {
 
 struct QueryArguments {
   std::string points, segments, output;
-  bool count = false, distances = false, area = false, from_low = false;
+  bool count = false, distances = false, is_signed = false, area = false, from_low = false;
   std::optional<int> heights;  ///< Axis.
   std::optional<Box3i> window;
   std::uint64_t memory_limit = 0;
@@ -148,21 +150,33 @@ std::string answer_segments(const QueryArguments& arguments, const DagModel& fil
 
 std::string write_distances(const QueryArguments& arguments, const DagModel& file,
                             MemoryBudget& memory, Session& session) {
-  const Box3i& box = *arguments.window;
+  const auto side = static_cast<std::int32_t>(file.grid().resolution());
+  const Box3i box = arguments.window.value_or(Box3i{{0, 0, 0}, {side, side, side}});
   std::uint64_t places = 1, size[3];
   for (int axis = 0; axis < 3; ++axis) {
     size[axis] = static_cast<std::uint64_t>(std::int64_t{box.hi[axis]} - box.lo[axis]);
     if (places > (std::uint64_t{1} << 40) / size[axis])
-      throw Error("", "", "--window has more than 2^40 places");
+      throw Error("", "",
+                  arguments.window ? "--window has more than 2^40 places"
+                                   : "the grid has more than 2^40 places: give --window");
     places *= size[axis];
   }
   const MemoryReservation field(&memory, places * sizeof(float));
-  std::vector<float> distances = distance_field(file.view(), box, &session.progress);
+  const Work work{&memory, &session.progress};
+  std::vector<float> distances = arguments.is_signed ? signed_distance_field(file.view(), box, work)
+                                                     : distance_field(file.view(), box, work);
   for (float& distance : distances)
     distance = static_cast<float>(static_cast<double>(distance) * file.grid().voxel_size);
-  NpyWriter writer(arguments.output, "<f4", {size[1], size[0]}, sizeof(float), size[2]);
-  writer.write_rows(distances.data(), size[2]);
-  writer.commit();
+  if (is_volume_name(arguments.output)) {
+    VolumeFile volume(arguments.output, arguments.output, file.grid(), box,
+                      VolumeFile::Values::kFloat32);
+    volume.write(distances.data(), distances.size() * sizeof(float));
+    volume.commit();
+  } else {
+    NpyWriter writer(arguments.output, "<f4", {size[1], size[0]}, sizeof(float), size[2]);
+    writer.write_rows(distances.data(), size[2]);
+    writer.commit();
+  }
   return fmt::format("{} x {} x {} distances", size[0], size[1], size[2]);
 }
 
@@ -197,17 +211,29 @@ void print_count(const QueryArguments& arguments, const DagModel& file, MemoryBu
 
 void print_area(const DagModel& file, MemoryBudget& memory, Session& session) {
   const VoxelSurface surface = surface_of(file.view(), {&memory, &session.progress});
+  const VoxelMoments moments = moments_of(file.view(), {&memory, &session.progress});
+  const Vec3d centre = file.grid().to_world(moments.centre),
+              lo = file.grid().to_world(Vec3d(moments.bounds.lo)),
+              hi = file.grid().to_world(Vec3d(moments.bounds.hi));
   const double side = file.grid().voxel_size;
   const double volume = static_cast<double>(surface.voxels) * side * side * side,
                area = static_cast<double>(surface.all_faces()) * side * side;
   session.bar.clear();
   if (session.json) {
-    const nlohmann::ordered_json json = {
-        {"voxels", surface.voxels}, {"volume", volume}, {"faces", surface.faces}, {"area", area}};
+    const nlohmann::ordered_json json = {{"voxels", surface.voxels},
+                                         {"volume", volume},
+                                         {"faces", surface.faces},
+                                         {"area", area},
+                                         {"centre", {centre.x, centre.y, centre.z}},
+                                         {"bounds", {lo.x, lo.y, lo.z, hi.x, hi.y, hi.z}}};
     fmt::print("{}", json_text(json));
   } else {
-    fmt::print("{}: {} voxels, volume {:.9g}; {} faces, area {:.9g}\n", session.subject,
-               with_commas(surface.voxels), volume, with_commas(surface.all_faces()), area);
+    fmt::print(
+        "{}: {} voxels, volume {:.9g}; {} faces, area {:.9g}\n"
+        "  centre of mass {:.9g}, {:.9g}, {:.9g}; bounds {:.9g}, {:.9g}, {:.9g} to {:.9g}, {:.9g}, "
+        "{:.9g}\n",
+        session.subject, with_commas(surface.voxels), volume, with_commas(surface.all_faces()),
+        area, centre.x, centre.y, centre.z, lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
   }
 }
 
@@ -234,7 +260,6 @@ void check_query_arguments(const QueryArguments& arguments, Session& session) {
   if (writes && arguments.output.empty()) throw UsageError("--output", "is required");
   if (!writes && !arguments.output.empty())
     throw UsageError("--output", "has no effect: the answer is printed");
-  if (arguments.distances && !arguments.window) throw UsageError("--distances", "needs --window");
   session.inputs = {arguments.points, arguments.segments};
   check_distinct({{"--output", arguments.output}}, session);
 }
@@ -269,14 +294,23 @@ void add_query_command(const Command& program, Session& session) {
       "--segments", arguments->segments, "S.npy",
       "For each segment (N x 6 float32 or float64, from and to): whether it meets no voxel, and "
       "the first voxel that it meets"));
-  add(command.flag("--distances", arguments->distances,
-                   "For each place of --window: the distance of its centre to the nearest voxel"));
+  const Option distances = add(
+      command.flag("--distances", arguments->distances,
+                   "For each place of --window, or of the grid: the distance of its centre to the "
+                   "nearest voxel"));
   const Option heights = add(command.parsed(
       "--heights", arguments->heights, parse_axis, "AXIS",
       "For each column along x, y or z: the coordinate of its highest voxel, -1 without voxels"));
   add(command.flag("--count", arguments->count, "Count the voxels, or those of --window"));
-  add(command.flag("--area", arguments->area,
-                   "Measure the volume of the voxels and the area of their surface"));
+  add(command.flag(
+      "--area", arguments->area,
+      "Measure the volume of the voxels, the area of their surface, their centre of mass and their "
+      "bounds"));
+  command
+      .flag("--signed", arguments->is_signed,
+            "With --distances: negative in voxels, where it is the distance to the nearest empty "
+            "place")
+      .needs(distances);
   command.flag("--from-low", arguments->from_low, "With --heights: of its lowest voxel")
       .needs(heights);
   command
@@ -284,7 +318,9 @@ void add_query_command(const Command& program, Session& session) {
               "The first voxel, and one past the last on each axis")
       .only_if([arguments = arguments.get()] { return arguments->distances || arguments->count; },
                "without --distances or --count");
-  command.text("-o,--output", arguments->output, "OUT.npy", "The array to write");
+  command.text("-o,--output", arguments->output, "OUT.npy",
+               "The array to write; of --distances also a volume: .nrrd, .mha, .mhd, .vti, .nii or "
+               ".nii.gz");
   add_memory_option(command, arguments->memory_limit);
   add_json_option(command, session);
   add_threads_option(command, session);

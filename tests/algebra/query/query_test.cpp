@@ -12,6 +12,7 @@
 #include "voxdag/algebra/query/height_map.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/query/surface_area.hpp"
+#include "voxdag/algebra/query/voxel_moments.hpp"
 
 namespace voxdag {
 namespace {
@@ -80,22 +81,101 @@ TEST(NearestVoxel, NothingIsNearAnEmptyDagOrAPointThatIsNone) {
   EXPECT_EQ(nearest_voxel(dag.view(), {1e9, 2, 3})->voxel, (Vec3i{1, 2, 3}));
 }
 
-TEST(DistanceField, HasTheDistancesOfCentres) {
-  for (const NamedVoxels& set : voxel_sets(4, 8)) {
-    SCOPED_TRACE(set.name);
+/// Returns the distance from the centre of a place to the nearest voxel, by looking at all of them.
+float brute_distance(const std::vector<Vec3i>& voxels, Vec3i place) {
+  const auto nearest = brute_nearest(voxels, static_cast<Vec3d>(place) + Vec3d{0.5, 0.5, 0.5});
+  return nearest ? static_cast<float>(std::sqrt(nearest->distance2)) : HUGE_VALF;
+}
+
+/// Calls body(place, index) for the places of a box, in the order of distance fields.
+template <class Body>
+void for_each_place_of(const Box3i& box, const Body& body) {
+  std::size_t i = 0;
+  for (std::int32_t z = box.lo.z; z < box.hi.z; ++z)
+    for (std::int32_t y = box.lo.y; y < box.hi.y; ++y)
+      for (std::int32_t x = box.lo.x; x < box.hi.x; ++x) body(Vec3i{x, y, z}, i++);
+}
+
+/// Windows that hold the grid of 16³, lie in it, cross it, are far from it, and are so long that
+/// squared distances do not fit into 32 bits.
+const Box3i kWindows[] = {{{0, 0, 0}, {16, 16, 16}},    {{-3, 4, 2}, {18, 12, 19}},
+                          {{-2, -5, -1}, {17, 19, 23}}, {{5, 6, 7}, {9, 8, 8}},
+                          {{40, 3, -50}, {43, 9, -48}}, {{-16500, 3, 4}, {16500, 4, 5}}};
+
+TEST(DistanceField, IsTheDistanceToTheNearestOfAll) {
+  for (const NamedVoxels& set : voxel_sets(4, 5)) {
     const Svdag dag = brute_svdag(4, set.voxels);
-    const Box3i box{{-3, 4, 2}, {18, 12, 19}};
-    const std::vector<float> distances = distance_field(dag.view(), box, {});
-    std::size_t i = 0;
-    for (std::int32_t z = box.lo.z; z < box.hi.z; ++z)
-      for (std::int32_t y = box.lo.y; y < box.hi.y; ++y)
-        for (std::int32_t x = box.lo.x; x < box.hi.x; ++x) {
-          const auto nearest = brute_nearest(set.voxels, {x + 0.5, y + 0.5, z + 0.5});
-          ASSERT_EQ(distances[i++],
-                    nearest ? static_cast<float>(std::sqrt(nearest->distance2)) : HUGE_VALF);
-        }
-    EXPECT_EQ(i, distances.size());
+    for (const Box3i& box : kWindows) {
+      const Vec3l size = Vec3l(box.hi) - Vec3l(box.lo);
+      if (size.x * size.y * size.z * static_cast<std::int64_t>(set.voxels.size()) > 2'000'000)
+        continue;
+      const std::vector<float> distances = distance_field(dag.view(), box, {});
+      for_each_place_of(box, [&](Vec3i place, std::size_t i) {
+        ASSERT_EQ(distances[i], brute_distance(set.voxels, place))
+            << set.name << " " << place.x << "," << place.y << "," << place.z;
+      });
+    }
   }
+}
+
+TEST(DistanceField, OfRandomSetsIsExactAlongLongLines) {
+  std::mt19937 rng(3);
+  std::vector<Vec3i> voxels;
+  for (int i = 0; i < 12; ++i)
+    voxels.push_back(
+        {static_cast<int>(rng() % 512), static_cast<int>(rng() % 8), static_cast<int>(rng() % 8)});
+  const Svdag dag = brute_svdag(9, voxels);
+  const Box3i box{{0, 0, 0}, {512, 9, 9}};
+  const std::vector<float> distances = distance_field(dag.view(), box, {});
+  for_each_place_of(box, [&](Vec3i place, std::size_t i) {
+    ASSERT_EQ(distances[i], brute_distance(voxels, place));
+  });
+}
+
+TEST(SignedDistanceField, IsNegativeInVoxels) {
+  for (const NamedVoxels& set : voxel_sets(3, 5)) {
+    const Svdag dag = brute_svdag(3, set.voxels);
+    const auto order = [](Vec3i a) { return std::array{a.x, a.y, a.z}; };
+    std::set<std::array<int, 3>> inside;
+    for (const Vec3i v : set.voxels) inside.insert(order(v));
+    std::vector<Vec3i> empty;
+    for_each_place_of({{-1, -1, -1}, {9, 9, 9}}, [&](Vec3i place, std::size_t) {
+      if (!inside.contains(order(place))) empty.push_back(place);
+    });
+    // The grid; a part of it; places around it; the middle, far from the empty places of a solid.
+    for (const Box3i& box : {Box3i{{0, 0, 0}, {8, 8, 8}}, Box3i{{1, 2, 0}, {7, 4, 5}},
+                             Box3i{{-2, 6, -1}, {9, 11, 3}}, Box3i{{3, 3, 3}, {5, 5, 5}}}) {
+      const std::vector<float> distances = signed_distance_field(dag.view(), box, {});
+      for_each_place_of(box, [&](Vec3i place, std::size_t i) {
+        ASSERT_EQ(distances[i], inside.contains(order(place)) ? -brute_distance(empty, place)
+                                                              : brute_distance(set.voxels, place))
+            << set.name << " " << place.x << "," << place.y << "," << place.z;
+      });
+    }
+  }
+}
+
+TEST(VoxelMoments, AreThoseOfAllVoxels) {
+  for (const int levels : {2, 3, 6})
+    for (const NamedVoxels& set : voxel_sets(levels, 6)) {
+      const VoxelMoments moments = moments_of(brute_svdag(levels, set.voxels).view(), {});
+      Vec3l sum;
+      Box3i bounds = Box3i::empty();
+      for (const Vec3i v : set.voxels) {
+        sum = sum + Vec3l(v);
+        bounds.extend(v);
+      }
+      const auto count = static_cast<double>(set.voxels.size());
+      EXPECT_EQ(moments.voxels, set.voxels.size()) << set.name;
+      if (set.voxels.empty()) continue;
+      EXPECT_EQ(moments.bounds, (Box3i{bounds.lo, bounds.hi + Vec3i{1, 1, 1}})) << set.name;
+      for (int axis = 0; axis < 3; ++axis)
+        EXPECT_DOUBLE_EQ(moments.centre[axis], static_cast<double>(sum[axis]) / count + 0.5);
+    }
+  // The farthest voxel of the largest grid.
+  const std::int32_t last = (1 << kMaxLevels) - 1;
+  const VoxelMoments corner = moments_of(brute_svdag(kMaxLevels, {{last, 0, last}}).view(), {});
+  EXPECT_EQ(corner.centre, (Vec3d{last + 0.5, 0.5, last + 0.5}));
 }
 
 TEST(HeightMap, HasTheOutermostVoxelOfEachColumn) {

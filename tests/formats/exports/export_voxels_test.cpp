@@ -42,7 +42,8 @@ TEST(Export, TheExtensionChooses) {
       error_of([&] { run("a.xyz"); }),
       (dir / "a.xyz").string() +
           ": cannot export to '.xyz': the extension must be .spc.npy, .npy, .raw, .ply, .glb, "
-          ".obj, .stl, .vox, .binvox, .schem, .voxel.json, .vdb or .nvdb");
+          ".obj, .stl, .vox, .binvox, .schem, .voxel.json, .nrrd, .mha, .mhd, "
+          ".vti, .nii, .nii.gz, .vdb or .nvdb");
 }
 
 TEST(Export, ThePlacementOfAnEarlierExportGoes) {

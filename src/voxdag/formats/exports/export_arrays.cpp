@@ -7,6 +7,7 @@
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
+#include "voxdag/formats/exports/volume_file.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
 
 namespace voxdag {
@@ -161,6 +162,17 @@ void export_raw(const std::filesystem::path& path, const VoxelSet& voxels, const
                        });
   file.commit();
   write_placement(path, grid, window, kRawDense, options);
+}
+
+void export_volume(const std::filesystem::path& path, const std::string& format,
+                   const VoxelSet& voxels, const Grid& grid, const ExportOptions& options) {
+  const Box3i window = export_window(path, voxels, options);
+  refuse_too_large(path, window, options);
+  VolumeFile file(path, format, grid, window, VolumeFile::Values::kUint8);
+  for_each_dense_strip(
+      voxels, window, kRawDense.axes, options,
+      [&](const std::vector<std::uint8_t>& bytes) { file.write(bytes.data(), bytes.size()); });
+  file.commit();
 }
 
 }  // namespace voxdag

@@ -15,6 +15,11 @@ void export_npy_coordinates(const std::filesystem::path& path, const VoxelSet& v
 void export_npy_dense(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                       const ExportOptions& options = {});
 
+/// Writes a dense uint8 volume (VolumeFile): 1 for voxels that are set, else 0. `format` tells the
+/// format as the ending of a name.
+void export_volume(const std::filesystem::path& path, const std::string& format,
+                   const VoxelSet& voxels, const Grid& grid, const ExportOptions& options);
+
 /// Writes a dense array without a header, one byte per voxel: 1 for voxels that are set, else 0. x
 /// changes fastest, then y, then z. With PATH.json.
 void export_raw(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,

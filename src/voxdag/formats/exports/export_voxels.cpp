@@ -42,6 +42,13 @@ Files npy(const Request& r) {
   return r.options.window ? one_file<export_npy_dense>(r) : one_file<export_npy_coordinates>(r);
 }
 
+Files volume(const Request& r) {
+  const std::string& format = r.content.format;
+  export_volume(r.path, format.empty() ? r.path.filename().string() : "." + format, r.voxels,
+                r.grid, r.options);
+  return {r.path};
+}
+
 Files ply(const Request& r) {
   return r.content.ply_faces ? one_file<export_ply_faces>(r) : one_file<export_ply_points>(r);
 }
@@ -84,6 +91,12 @@ constexpr ExportFormat kExportFormats[] = {{".spc.npy", dag_file<export_spc>, fa
                                            {".binvox", one_file<export_binvox>, false},
                                            {".schem", one_file<export_schem>, true, 'y', true},
                                            {".voxel.json", dag_file<export_playcanvas>, false},
+                                           {".nrrd", volume, false},
+                                           {".mha", volume, false},
+                                           {".mhd", volume, false},
+                                           {".vti", volume, false},
+                                           {".nii", volume, false},
+                                           {".nii.gz", volume, false},
                                            {".vdb", one_file<export_vdb>, true},
                                            {".nvdb", one_file<export_vdb>, true}};
 
