@@ -453,8 +453,9 @@ def test_load_takes_any_file(tmp_path):
     (tmp_path / "p.xyz").write_text("0 0 0\n1 2 3\n")
     assert voxdag.load(tmp_path / "p.xyz", resolution=8).resolution == 8
     assert len(voxdag.load(tmp_path / "p.xyz", pitch=1.0)) == 2
+    assert voxdag.load(tmp_path / "p.xyz").resolution == 1024
     mesh.export(tmp_path / "points.ply")
-    assert voxdag.load(tmp_path / "points.ply", resolution=16) == mesh
+    assert voxdag.load(tmp_path / "points.ply") == mesh
     mesh.export(tmp_path / "cube.vox")
     assert voxdag.load(tmp_path / "cube.vox") == mesh
     assert voxdag.load(tmp_path / "cube.obj", pitch=0.25).voxel_size == 0.25
@@ -488,8 +489,8 @@ def test_the_mesh_of_a_dag_encloses_its_voxels():
 
 def test_signed_distances_are_negative_in_voxels():
     dag = voxdag.from_dense(np.ones((4, 4, 4), bool))
-    signed = dag.distance_field(((-1, 0, 0), (4, 4, 4)), signed=True)
-    assert signed[0, 0, 0] == 0.5 and signed[1, 1, 1] == -0.5 and signed[2, 1, 1] == -1.5
+    signed = dag.crop(((0, 0, 0), (3, 4, 4))).distance_field(signed=True)
+    assert signed[3, 0, 0] == 0.5 and signed[0, 0, 0] == -0.5 and signed[1, 1, 1] == -1.5
     assert (dag.distance_field() == np.maximum(dag.distance_field(signed=True), 0)).all()
 
 

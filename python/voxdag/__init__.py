@@ -50,36 +50,39 @@ for _name in ("cast", "occluded", "coords", "to_dense", "heights", "distance_fie
               "render", "save"):
     setattr(Dag, _name, _checked(getattr(Dag, _name)))
 
-#: Files of points, which need a resolution.
-_POINTS = (".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb", ".las", ".pcd")
-_VOXELS = (".npy", ".binvox", ".nrrd", ".nhdr", ".nii", ".vdb", ".vox")
+#: Files that import_file() reads, and build_mesh() does not.
+_IMPORTED = (".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb", ".las", ".pcd", ".npy", ".binvox",
+             ".nrrd", ".nhdr", ".nii", ".vdb", ".vox")
 
 
-def load(path, *, resolution=1024, **options):
+def load(path, *, resolution=None, **options):
     """Returns the DAG of any file: opens .vdag files, imports points, voxels and volumes, builds
     meshes.
 
-    resolution: voxels along the longest side of meshes and points; voxels keep those of the file.
-    options: those of build_mesh() and import_file(), such as colors=True for meshes.
+    resolution: voxels along the longest side of meshes and points, by default 1024; points that
+    voxdag exported, voxels and volumes have a grid in their file.
+    options: those of build_mesh() and import_file(), such as pitch, or colors=True for meshes.
     """
     name = _os.fspath(path).lower()
     for packed in (".gz", ".zst"):
         name = name.removesuffix(packed)
     if name.endswith(".vdag"):
         return open(path, **options)
-    if name.endswith(_POINTS):
-        return import_file(path, **({} if "pitch" in options else {"resolution": resolution}),
-                           **options)
-    if name.endswith(_VOXELS) or _os.path.isdir(path):
-        return import_file(path, **options)
-    if "pitch" not in options:
+    if resolution is not None:
         options["resolution"] = resolution
+    is_sized = "resolution" in options or "pitch" in options
+    if not name.endswith(_IMPORTED) and not _os.path.isdir(path):
+        try:
+            return build_mesh(path, **options, **({} if is_sized else {"resolution": 1024}))
+        except OSError as error:
+            if not (name.endswith(".ply") and "'face' element" in str(error)):
+                raise
     try:
-        return build_mesh(path, **options)
-    except OSError as error:
-        if name.endswith(".ply") and "'face' element" in str(error):
-            return import_file(path, **options)
-        raise
+        return import_file(path, **options)
+    except (OSError, ValueError) as error:
+        if is_sized or "resolution" not in str(error):
+            raise
+    return import_file(path, resolution=1024, **options)
 
 
 def _mesh_arrays(mesh):

@@ -10,7 +10,7 @@ void check_grid_options(const VoxelSource& source, const ImportOptions& options)
   const bool sets_place = options.voxel_size || options.origin;
   if (source.has_points()) {
     if (!options.resolution && !options.voxel_size && !source.grid())
-      throw Error("", "", "holds points, which need -r or --voxel-size");
+      throw Error("", "", "holds points, which need a resolution or a voxel size");
     if (options.resolution && options.voxel_size)
       throw Error("", "", "holds points: give -r or --voxel-size, not both");
     if (options.origin && (options.bounds || (!options.voxel_size && !options.resolution)))
