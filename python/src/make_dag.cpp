@@ -216,6 +216,9 @@ DagPointer import_source(const VoxelSource& source, const ImportOptions& options
   if (imported.not_finite > 0)
     warnings.push_back(std::to_string(imported.not_finite) +
                        " points left out: a coordinate is not finite");
+  Presentation presentation;
+  presentation.cubes = !source.has_points();
+  imported.model.set_presentation(presentation);
   return std::make_shared<Dag>(std::move(imported.model));
 }
 

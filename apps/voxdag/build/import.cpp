@@ -62,11 +62,14 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
           moved_source(std::move(source),
                        InputTransform(arguments.transform, custom_of(file, arguments.format))));
     });
+  const bool has_points = sources.front()->has_points();
   return with_file_name(session.subject, [&] {
     ImportedModel result = import_model(*joined_source(std::move(sources)), options,
                                         names_of(arguments.files), work, arguments.transform);
     Presentation presentation =
         presentation_of(arguments.transform, custom_of(arguments.files.front(), arguments.format));
+    // Values from a threshold on lie within a surface.
+    presentation.cubes = !has_points && !arguments.threshold;
     if (const auto up = up_of(result.model.metadata())) presentation.up = up;
     result.model.set_presentation(
         with_home(presentation, result.model.view(), result.model.grid()));

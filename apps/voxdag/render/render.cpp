@@ -25,6 +25,9 @@ void render_loaded(const RenderArguments& arguments, Session& session) {
   const VoxelSet scene = file.voxels();
   RenderOptions options = picture_options(arguments, scene.esvo() != nullptr);
   show_as(file.metadata().presentation, options.view);
+  const bool is_usual_size = options.cube_pixels == RenderOptions{}.cube_pixels;
+  if (file.metadata().presentation.cubes && is_usual_size && !arguments.view.has("--cubes"))
+    options.cube_pixels = 0;
   std::optional<SceneModel> look = open_look(arguments.look, file, session);
   if (arguments.materials && look)
     look->show_materials(arguments.look, &session.progress);

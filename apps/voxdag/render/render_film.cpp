@@ -65,7 +65,7 @@ CameraPath read_camera_path(const PathFile& file, const FilmScene& scene,
 /// Returns the direction towards the sun in the first frame.
 Vec3d sun_of_first_frame(const Film& film, const FilmScene& scene) {
   RenderOptions options = film.options;
-  options.view = as_request(film.path.at(film.path.start()));
+  options.view = as_request(film.path.at(film.path.start()), options.view);
   return static_cast<Vec3d>(RenderPlan(scene.voxels, scene.grid, options).setup().sky.sun);
 }
 

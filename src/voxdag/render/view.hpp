@@ -19,9 +19,9 @@ struct ViewRequest {
   std::optional<HomeView> home;
 };
 
-/// Returns the request for just this view.
-inline ViewRequest as_request(const View& view) {
-  return {view.eye, view.target, view.up, view.vertical_fov_degrees, {}, {}};
+/// Returns the request for just this view of the scene that `scene` describes.
+inline ViewRequest as_request(const View& view, const ViewRequest& scene = {}) {
+  return {view.eye, view.target, view.up, view.vertical_fov_degrees, scene.scene_up, scene.home};
 }
 
 /// If the caller gives eye and target, frame_scene() reads the voxels only down to this level, to
