@@ -15,8 +15,8 @@ struct ViewRequest {
   std::optional<double> vertical_fov_degrees;
   /// The scene's up vector, and its home_view(), as its file stores them; if not set, frame_scene
   /// detects them.
-  std::optional<Vec3d> scene_up;
-  std::optional<HomeView> home;
+  std::optional<Vec3d> scene_up = {};
+  std::optional<HomeView> home = {};
 };
 
 /// Returns the request for just this view of the scene that `scene` describes.
