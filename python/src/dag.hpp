@@ -9,6 +9,7 @@
 #include <string>
 
 #include "voxdag/cpu/cpu_scene.hpp"
+#include "voxdag/cpu/with_home.hpp"
 #include "voxdag/file/model/dag_model.hpp"
 #include "voxdag/stored/attributes/look.hpp"
 
@@ -17,7 +18,10 @@ namespace voxdag::python {
 /// A DAG that Python objects share. It never changes, so several threads may use it.
 class Dag {
  public:
-  explicit Dag(DagModel model) : model_(std::move(model)) {}
+  explicit Dag(DagModel model) : model_(std::move(model)) {
+    const Presentation& shown = model_.metadata().presentation;
+    if (!shown.home) model_.set_presentation(with_home(shown, view(), grid()));
+  }
 
   const DagModel& model() const { return model_; }
   SvdagView view() const { return model_.view(); }

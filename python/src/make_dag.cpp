@@ -19,6 +19,7 @@
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/formats/imports/import_model.hpp"
+#include "voxdag/formats/presentation.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/mesh/place_vertices.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
@@ -65,9 +66,10 @@ std::optional<SolidRule> rule_of(const py::object& solid) {
 /// Builds the DAG of a mesh, as `voxdag build` does.
 DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
                       const std::optional<SolidRule>& solid, bool colors, bool cuts_alpha,
-                      const std::string& name, Work work) {
+                      const std::string& name, const Presentation& presentation, Work work) {
   const Mesh& mesh = source.mesh;
   VdagMetadata metadata;
+  metadata.presentation = presentation;
   metadata.grid = grid_for(mesh, grid);
   metadata.source = {name, mesh.vertices.size(), mesh.triangles.size()};
   metadata.build = settings_of(grid);
@@ -152,7 +154,7 @@ DagPointer build(const ArrayLike& vertices, const ArrayLike& faces,
   const std::optional<SolidRule> rule = rule_of(solid);
   const MeshWithAppearance source = mesh_of(vertices, faces, colors);
   return run_work([&](Work work) {
-    return build_mesh(source, grid, rule, colors.has_value(), false, "arrays", work);
+    return build_mesh(source, grid, rule, colors.has_value(), false, "arrays", {}, work);
   });
 }
 
@@ -170,7 +172,8 @@ DagPointer build_file(const std::filesystem::path& path, std::optional<std::int6
     else
       source.mesh = read_mesh(path, options);
     return with_file_name(path.string(), [&] {
-      return build_mesh(source, grid, rule, colors, alpha == "cut", path.filename().string(), work);
+      return build_mesh(source, grid, rule, colors, alpha == "cut", path.filename().string(),
+                        presentation_of({}, mesh_custom(path, options)), work);
     });
   });
 }
@@ -213,6 +216,9 @@ DagPointer import_source(const VoxelSource& source, const ImportOptions& options
   if (imported.not_finite > 0)
     warnings.push_back(std::to_string(imported.not_finite) +
                        " points left out: a coordinate is not finite");
+  Presentation presentation;
+  presentation.cubes = !source.has_points();
+  imported.model.set_presentation(presentation);
   return std::make_shared<Dag>(std::move(imported.model));
 }
 

@@ -34,7 +34,13 @@ ImageRgb8 render(const Dag& dag, int width, int height, const std::optional<Trip
   RenderOptions options;
   options.width = width;
   options.height = height;
-  options.view = {vector_of(eye), vector_of(target), vector_of(up), fov};
+  options.view.eye = vector_of(eye);
+  options.view.target = vector_of(target);
+  options.view.up = vector_of(up);
+  options.view.vertical_fov_degrees = fov;
+  show_as(dag.model().metadata().presentation, options.view);
+  if (dag.model().metadata().presentation.cubes) options.cube_pixels = 0;
+  options.ground = true;
   options.sun = vector_of(sun);
   options.samples_per_pixel = samples;
   options.shadows = shadows;

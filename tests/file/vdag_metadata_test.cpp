@@ -39,6 +39,26 @@ TEST(VdagMetadata, IsTheJsonOfTheSpecification) {
             R"("triangles":69451},"program":"voxdag test","build":{"cover":"exact"}})");
 }
 
+TEST(VdagMetadata, UpUnitAndHomeAreOptionalKeys) {
+  VdagMetadata metadata = example();
+  metadata.presentation = {'z', "mm", HomeView{{{1, 2, 3}, {0.5, 0, 0}, {0, 0, 1}, 35}, {}}};
+  const std::string json = vdag_metadata_json(metadata);
+  EXPECT_TRUE(json.ends_with(R"("up":"z","unit":"mm","home":{"eye":[1.0,2.0,3.0],)"
+                             R"("target":[0.5,0.0,0.0],"up":[0.0,0.0,1.0],"fov":35.0}})"));
+  EXPECT_EQ(parse_vdag_metadata(json), metadata);
+  const auto error_with = [&](const std::string& from, const std::string& to) {
+    std::string changed = json;
+    return metadata_error_of(changed.replace(changed.find(from), from.size(), to));
+  };
+  EXPECT_EQ(error_with(R"("up":"z")", R"("up":"w")"), "up: is none of x, y and z");
+  EXPECT_EQ(error_with("[1.0,2.0,3.0]", "[0.5,0.0,0.0]"),
+            "home: has no direction, or an up vector along it");
+  EXPECT_EQ(error_with("[0.0,0.0,1.0]", "[1.0,4.0,6.0]"),
+            "home: has no direction, or an up vector along it");
+  EXPECT_EQ(error_with(R"("fov":35.0)", R"("fov":180)"),
+            "home.fov: not an angle from 0.000001 to below 180 degrees");
+}
+
 TEST(VdagMetadata, DoublesReadBackBitForBit) {
   std::mt19937_64 rng(1);
   VdagMetadata metadata = example();

@@ -101,5 +101,27 @@ TEST(InputTransform, NormalsTurnAndHeightsScaleWithTheMesh) {
   EXPECT_EQ(cross(v[1] - v[0], v[2] - v[0]), (Vec3f{0, 9, 0}));
 }
 
+TEST(InputTransform, TheUpAxisAndTheUnitFollowTheMove) {
+  const auto after = [](const TransformRequest& request, const char* file) {
+    const FormatCustom custom = custom_after(request, custom_of(file));
+    return (custom.has_up ? std::string(1, static_cast<char>('x' + custom.up)) : "?") + custom.unit;
+  };
+  EXPECT_EQ(after({}, "a.glb"), "ym");
+  EXPECT_EQ(after({}, "a.vox"), "z");
+  EXPECT_EQ(after({}, "a.obj"), "?");
+  EXPECT_EQ(after(up("z"), "a.obj"), "z");
+  EXPECT_EQ(after(up("x:z"), "a.glb"), "zm");
+  TransformRequest request = up("z");
+  request.unit = "mm";
+  EXPECT_EQ(after(request, "a.glb"), "zmm");
+  request.rotate = "x:90";  // From z to -y.
+  EXPECT_EQ(after(request, "a.glb"), "?mm");
+  request.rotate = "x:-90,z:45";
+  request.scale = 2;  // The unit of the result has no name.
+  EXPECT_EQ(after(request, "a.glb"), "?");
+  request.rotate = "x:-90,y:45";
+  EXPECT_EQ(after(request, "a.glb"), "y");
+}
+
 }  // namespace
 }  // namespace voxdag

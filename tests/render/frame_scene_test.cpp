@@ -83,6 +83,49 @@ TEST(FrameScene, LooksFromInsideIfTheSceneIsARoom) {
   }
 }
 
+TEST(HomeView, IsRoundedAndShowsARoomFromInsideAgain) {
+  const Svdag dag = room();
+  const Grid grid = grid_of(6);
+  const HomeView home = home_view(dag.view(), grid, {});
+  ASSERT_TRUE(home.sun);
+  for (const Vec3d point : {home.eye, home.target})
+    for (int axis = 0; axis < 3; ++axis) {
+      const double steps = (point[axis] - grid.origin[axis]) / grid.side() * 1024;
+      EXPECT_EQ(steps, std::round(steps));
+    }
+  ViewRequest request;
+  request.home = home;
+  request.scene_up = home.up;
+  EXPECT_EQ(frame_scene(dag.view(), grid, 0.7, request), static_cast<const View&>(home));
+  EXPECT_TRUE(shows_interior(dag.view(), grid, request, home));
+}
+
+TEST(HomeView, FromOutsideGivesTheDirectionForEveryShapeOfPicture) {
+  const Svdag dag = brute_svdag(6, {{10, 20, 30}, {50, 20, 33}, {30, 40, 8}});
+  const Grid grid = grid_of(6);
+  ViewRequest request;
+  request.scene_up = Vec3d{0, 0, 1};
+  request.home = home_view(dag.view(), grid, request.scene_up);
+  EXPECT_EQ(request.home->up, (Vec3d{0, 0, 1}));
+  const Vec3d forward = normalized(request.home->target - request.home->eye);
+  EXPECT_LT(forward.z, -0.3);  // From above.
+  for (const double aspect : {0.5, 1.0, 3.0}) {
+    const View view = frame_scene(dag.view(), grid, aspect, request);
+    EXPECT_GT(dot(normalized(view.target - view.eye), forward), 1 - 1e-9);
+    EXPECT_TRUE(is_in_picture(view, aspect, grid.to_world({10, 20, 30})));
+    EXPECT_TRUE(is_in_picture(view, aspect, grid.to_world({51, 21, 34})));
+  }
+}
+
+TEST(HomeView, TheUpAxisOfTheSceneWinsOverItsShapeAndARequestOverBoth) {
+  const Svdag dag = room();
+  ViewRequest request;
+  request.scene_up = Vec3d{1, 0, 0};
+  EXPECT_EQ(frame_scene(dag.view(), grid_of(6), 1, request).up, (Vec3d{1, 0, 0}));
+  request.up = Vec3d{0, 0, 1};
+  EXPECT_EQ(frame_scene(dag.view(), grid_of(6), 1, request).up, (Vec3d{0, 0, 1}));
+}
+
 TEST(SceneViews, AreInsideARoomAndDiffer) {
   const Svdag dag = room();
   const Grid grid = grid_of(6);

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import {
-  DEFAULTS, MODES, SHOWS, SettingsError, mergeSettings, settingsFromJson, settingsToJson,
+  BACKGROUNDS, DEFAULTS, MODES, SHOWS, TONES, SettingsError, mergeSettings, settingsFromJson, settingsToJson,
 } from '../../apps/viewer/page/settings.js';
 import { settingsFromHash, settingsToHash } from '../../apps/viewer/page/settings_link.js';
 import { randomNumbers } from './random.mjs';
@@ -23,6 +23,7 @@ function randomSettings(seed) {
     camera: maybe(camera),
     sun: { direction: maybe(() => vector(1)), angle: random() * 5, on: random() < 0.5 },
     sky: random() * 3, exposure: random() * 4, shadows: random() < 0.5,
+    tone: pick(TONES), background: pick(BACKGROUNDS), ground: random() < 0.5,
     occlusion: { samples: Math.floor(random() * 256), distance: random() * scale, cone: random() },
     lod: random() * 4, cubes: random() * 100, level: maybe(() => Math.floor(random() * 20)),
     colors: random() < 0.5, normals: random() < 0.5, show: pick(SHOWS), mode: pick(MODES),

@@ -5,9 +5,9 @@
 import { inlineScene } from './file/byte_source.js';
 import { SceneLoader } from './file/scene_loader.js';
 import { SceneTextures } from './gpu/scene_textures.js';
-import { homeView } from './hands/pose.js';
+import { axisNamed, homeView } from './hands/pose.js';
 import { SceneMemory } from './scene_memory.js';
-import { bounds } from './trace.js';
+import { bounds, guessUp } from './trace.js';
 
 /**
  * @typedef {import('./file/scene_loader.js').FileInfo} FileInfo
@@ -35,6 +35,8 @@ export class SceneArrival {
     /** @type {SceneTextures | null} */
     this.textures = null;
     this.bytesLoaded = 0;
+    /** @type {Vec3} The up vector that the shape of the scene suggests. */
+    this.guessed = [0, 1, 0];
     /** Whether the loader has sent all that it can: it has finished or failed. */
     this.hasEnded = false;
     /** @type {Promise<void>} */
@@ -89,7 +91,7 @@ export class SceneArrival {
     const box = { low: origin, high: /** @type {Vec3} */ (origin.map((x) => x + side)) };
     this.info = {
       name: source.name, levels, resolution, origin, voxelSize, bounds: box, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, source,
-      view: homeView(box, this.aspect()),
+      view: this.#homeIn(box, info), home: info.home, cubes: info.cubes,
     };
     this.bytesLoaded = bytes;
     this.report('info', this.info);
@@ -105,8 +107,15 @@ export class SceneArrival {
     memory.add(message, textures);
     if (message.type === 'attributes') return this.report('look', {});
     info.bounds = bounds(memory.dag(), BOUNDS_LEVEL) ?? info.bounds;
-    info.view = homeView(info.bounds, this.aspect());
+    info.view = this.#homeIn(info.bounds, memory.info);
     this.report('level', { level: memory.shown, levels: info.levels, bytes: this.bytesLoaded });
+  }
+
+  /** Returns the first view of the scene. Its up vector is that of the file, else it is guessed. @param {import('./hands/pose.js').Box} box @param {FileInfo} info */
+  #homeIn(box, { up, home }) {
+    const { memory } = this;
+    if (up === null && memory !== null && memory.shown <= 7) this.guessed = guessUp(memory.dag());
+    return homeView(box, this.aspect(), up === null ? this.guessed : axisNamed(up), home);
   }
 
   /** Uploads how often nodes are used, unless the textures hold it: they follow each level from then on. */

@@ -21,6 +21,9 @@ import { cross, length, normalized, sub } from './math.js';
  * @property {{direction: Vec3 | null, angle: number, on: boolean}} sun  Null: see sunDirection().
  * @property {number} sky  Factor on the light of the sky.
  * @property {number} exposure  Factor before tone mapping; 0: automatic.
+ * @property {'neutral' | 'agx' | 'filmic'} tone  Curve of the tone mapping.
+ * @property {'sky' | 'grey' | 'white' | 'black'} background
+ * @property {boolean} ground  Whether a ground under the scene shows its shadow.
  * @property {boolean} shadows
  * @property {{samples: number, distance: number, cone: number}} occlusion
  * @property {number} lod  Pixels.
@@ -42,6 +45,10 @@ import { cross, length, normalized, sub } from './math.js';
 
 /** @type {readonly Show[]} */
 export const SHOWS = ['light', 'level', 'steps', 'sharing', 'normal', 'depth', 'occlusion'];
+/** The curves of render/tone_map.hpp. @type {readonly Settings['tone'][]} */
+export const TONES = ['neutral', 'agx', 'filmic'];
+/** @type {readonly Settings['background'][]} */
+export const BACKGROUNDS = ['sky', 'grey', 'white', 'black'];
 /** @type {readonly Mode[]} */
 export const MODES = ['orbit', 'fly', 'walk'];
 
@@ -52,6 +59,9 @@ export const DEFAULTS = {
   sun: { direction: null, angle: 0.53, on: true },
   sky: 1,
   exposure: 0,
+  tone: 'neutral',
+  background: 'sky',
+  ground: true,
   shadows: true,
   occlusion: { samples: 64, distance: 0, cone: 0 },
   lod: 1,
@@ -66,6 +76,9 @@ export const DEFAULTS = {
   annotations: [],
   path: [],
 };
+
+/** Returns from which size in pixels voxels look like cubes: of a file whose voxels are cubes always, unless the settings differ from the default. @param {Settings} settings @param {{cubes: boolean} | null} info */
+export const shownCubes = (settings, info) => (info?.cubes && settings.cubes === DEFAULTS.cubes ? 0 : settings.cubes);
 
 /** Settings that are wrong. The message names the key and what is allowed. */
 export class SettingsError extends Error {
@@ -211,6 +224,9 @@ const settingsCheck = record({
   sun: record({ direction: orNull(direction), angle: number(0, 89), on: boolean }),
   sky: number(0, 1000),
   exposure: number(0, 1e6),
+  tone: oneOf(TONES),
+  background: oneOf(BACKGROUNDS),
+  ground: boolean,
   shadows: boolean,
   occlusion: record({ samples: integer(0, 4096), distance: number(0, 1e30), cone: number(0, 12.6) }),
   lod: number(0, 1000),

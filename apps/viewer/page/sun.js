@@ -8,6 +8,13 @@ import { addScaled, cross, normalized, scale } from './math.js';
  */
 
 /**
+ * Returns the sun of an interior, if the scene is one and the camera is in it; else null.
+ * @param {{bounds: import('./settings.js').Box, home: (Camera & {sun?: Vec3}) | null}} scene @param {Camera} camera
+ */
+export const interiorSun = ({ bounds, home }, camera) =>
+  (home?.sun && camera.eye.every((x, a) => x > bounds.low[a] && x < bounds.high[a]) ? home.sun : null);
+
+/**
  * Returns the unit vector towards the sun. Without a direction the sun turns with the camera, as
  * `voxdag render` chooses it: `usual` counts along right, up and backward.
  * @param {Vec3 | null} direction @param {Camera} camera @param {readonly number[]} usual @returns {Vec3}

@@ -205,3 +205,39 @@ export function bounds(dag, level) {
   const world = (/** @type {number[]} */ p) => /** @type {Vec3} */ (p.map((x, a) => dag.origin[a] + x * side));
   return { low: world(low), high: world(high) };
 }
+
+/**
+ * Returns the likely up vector: y or z. The port of guess_up() of render/coarse_cells.cpp, from the cells of at most level 7.
+ * @param {Dag} dag @returns {Vec3}
+ */
+export function guessUp(dag) {
+  const depth = Math.min(7, dag.shown), side = 2 ** depth;
+  /** @type {number[][]} */
+  const cells = [];
+  /** @param {number} node @param {number} l @param {number[]} at */
+  const visit = (node, l, at) => {
+    if (l === depth) return void cells.push(at);
+    const mask = childMask(dag, node, l);
+    for (let i = 0; i < 8; ++i)
+      if ((mask >> i) & 1) visit(l + 1 < depth ? childOf(dag, node, l, i) : 0, l + 1, at.map((p, a) => 2 * p + ((i >> a) & 1)));
+  };
+  if (dag.shown > 0) visit(0, 0, [0, 0, 0]);
+  if (cells.length === 0) return [0, 1, 0];
+  const low = [side, side, side], high = [0, 0, 0];
+  for (const cell of cells)
+    for (let a = 0; a < 3; ++a) {
+      low[a] = Math.min(low[a], cell[a]);
+      high[a] = Math.max(high[a], cell[a] + 1);
+    }
+  const [x, y, z] = high.map((h, a) => h - low[a]);
+  if (z * 3 < Math.min(x, y)) return [0, 0, 1];
+  if (y * 3 < Math.min(x, z)) return [0, 1, 0];
+  const reach = Math.max(1, Math.floor(side / 40));
+  /** Returns the part of the lower side along `axis` that cells cover. @param {number} axis */
+  const cover = (axis) => {
+    const u = (axis + 1) % 3, v = (axis + 2) % 3, covered = new Set();
+    for (const cell of cells) if (cell[axis] - low[axis] < reach) covered.add(cell[u] * side + cell[v]);
+    return covered.size / ((high[u] - low[u]) * (high[v] - low[v]));
+  };
+  return cover(2) > 2.5 * cover(1) ? [0, 0, 1] : [0, 1, 0];
+}

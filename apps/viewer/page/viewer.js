@@ -9,7 +9,7 @@ import { framedCamera } from './hands/pose.js';
 import { directionThrough } from './lens.js';
 import { SceneArrival } from './scene_arrival.js';
 import { castInSection } from './section_ray.js';
-import { DEFAULTS, mergeSettings } from './settings.js';
+import { DEFAULTS, mergeSettings, shownCubes } from './settings.js';
 import { cast, contains } from './trace.js';
 
 /**
@@ -221,9 +221,11 @@ class CanvasViewer extends Events {
   shot(quick, samples = STILL_SAMPLES) {
     const { memory, textures } = this.arrival ?? {};
     if (!memory || !textures || memory.shown < 1) throw new Error('there is no scene');
-    const { origin, voxelSize, resolution } = memory.info;
+    const { origin, voxelSize, resolution, home } = memory.info;
+    const bounds = this.info?.bounds ?? { low: origin, high: origin };
     return {
-      settings: { ...this.settings, camera: this.camera() }, place: { origin, side: voxelSize * resolution },
+      settings: { ...this.settings, camera: this.camera(), cubes: shownCubes(this.settings, memory.info) },
+      place: { origin, side: voxelSize * resolution, bounds, home },
       scene: textures, shown: memory.shown, mostInstances: memory.mostInstances, samples, quick,
     };
   }

@@ -27,6 +27,8 @@
  * @property {boolean} hasNormals
  * @property {{name?: string, vertices?: number, triangles?: number}} [source]
  * @property {Camera} view  The suggested view.
+ * @property {(Camera & {sun?: Vec3}) | null} home  The view of the file, with a sun if it is an interior.
+ * @property {boolean} cubes  Whether its voxels are cubes, not samples of smooth surfaces.
  *
  * @typedef {object} Statistics
  * @property {number} levelsLoaded  Levels of cells that have arrived.

@@ -14,6 +14,7 @@
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
 #include "voxdag/builders/solid/solid_settings.hpp"
 #include "voxdag/builders/voxelize/grid_request.hpp"
+#include "voxdag/formats/presentation.hpp"
 
 namespace voxdag::cli {
 
@@ -42,6 +43,10 @@ struct BuildArguments {
   std::uint64_t parts = 0;  ///< For DAGs: least number of parts; 0: not given.
   EsvoArguments esvo;
 
+  /// Returns the up axis and the unit of the voxels, as far as the first mesh's format says them.
+  Presentation presentation() const {
+    return presentation_of(access.transform, access.custom_of(meshes.front()));
+  }
   /// Returns the line of a summary that says how the meshes were moved; empty if they were not.
   std::string transform_line() const {
     return transform_table(access.transform, access.custom_of(meshes.front()));

@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "build/build_arguments.hpp"
+#include "cli/input_files.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/builders/attributes/cut_alpha.hpp"
 #include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/cpu/with_home.hpp"
 #include "voxdag/file/model/written_by.hpp"
 #include "voxdag/file/report/dag_report.hpp"
 #include "voxdag/file/report/human.hpp"
@@ -167,6 +169,7 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
     shading.reset();
     free_source();
   }
+  report.metadata.presentation = with_home(arguments.presentation(), view, report.metadata.grid);
   work.poll();
   report.attributes = sizes_of(attributes.view());
   if (arguments.compact) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "build/build_arguments.hpp"
+#include "cli/input_files.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/process_memory.hpp"
@@ -124,6 +125,7 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
                      source.mesh.triangles.size()};
   metadata.program = written_by();
   metadata.build = settings_of(arguments);
+  metadata.presentation = arguments.presentation();
   if (displaced) metadata.build["displaced"] = "yes";
   std::optional<Occluders> occluders;
   if (esvo.bake.rays > 0 && options.settings.attributes) {

@@ -1,15 +1,20 @@
 /// `voxdag build` in parts: in bounded memory, or by many processes.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "build/build_arguments.hpp"
 #include "cli/job.hpp"
+#include "voxdag/algebra/coarsen.hpp"
 #include "voxdag/cluster/parts_job.hpp"
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/core/io/temporary_folder.hpp"
+#include "voxdag/cpu/with_home.hpp"
+#include "voxdag/file/long_vdag_file.hpp"
+#include "voxdag/file/model/dag_model.hpp"
 #include "voxdag/file/model/written_by.hpp"
 #include "voxdag/file/report/dag_report.hpp"
 #include "voxdag/file/report/human.hpp"
@@ -27,6 +32,20 @@ DagReport report_of_file(const PartsReport& parts, const std::string& output) {
   report.file_bytes = std::filesystem::file_size(output, unknown);
   if (unknown) report.file_bytes = 0;  // the output is a pipe or a device
   return report;
+}
+
+/// Returns the presentation with a home for the voxels of a file, which may have long pointers.
+Presentation presentation_of_file(const std::filesystem::path& path,
+                                  const Presentation& presentation, Work work) {
+  VdagContainer opened(path, work.memory);
+  if (opened.kind() != VdagKind::kLong) {
+    const DagModel file(std::move(opened), work);
+    return with_home(presentation, file.view(), file.grid());
+  }
+  const LongVdagFile file(std::move(opened));
+  const Svdag coarse = coarsen(file.view(), std::min(file.view().levels, 10), work);
+  const Grid grid = coarser_metadata(file.metadata(), coarse.view()).grid;
+  return with_home(presentation, coarse.view(), grid);
 }
 
 double total_seconds(const PartsReport& parts) {
@@ -83,6 +102,9 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
   arguments.access.give_rights(job.reading);
   std::vector<std::string> warnings;
   job.reading.warnings = &warnings;
+  job.present = [&](const std::filesystem::path& draft) {
+    return presentation_of_file(draft, arguments.presentation(), {&memory, &session.progress});
+  };
   std::optional<TemporaryFolder> temporary;
   if (arguments.work_folder.empty()) temporary.emplace(arguments.output);
   job.work_folder =

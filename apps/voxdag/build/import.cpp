@@ -15,10 +15,13 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/core/with_file_name.hpp"
+#include "voxdag/cpu/with_home.hpp"
 #include "voxdag/file/report/dag_report.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/formats/exports/export_scene.hpp"
 #include "voxdag/formats/imports/import_model.hpp"
 #include "voxdag/formats/imports/moved_source.hpp"
+#include "voxdag/formats/presentation.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -59,9 +62,18 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
           moved_source(std::move(source),
                        InputTransform(arguments.transform, custom_of(file, arguments.format))));
     });
+  const bool has_points = sources.front()->has_points();
   return with_file_name(session.subject, [&] {
-    return import_model(*joined_source(std::move(sources)), options, names_of(arguments.files),
-                        work, arguments.transform);
+    ImportedModel result = import_model(*joined_source(std::move(sources)), options,
+                                        names_of(arguments.files), work, arguments.transform);
+    Presentation presentation =
+        presentation_of(arguments.transform, custom_of(arguments.files.front(), arguments.format));
+    // Values from a threshold on lie within a surface.
+    presentation.cubes = !has_points && !arguments.threshold;
+    if (const auto up = up_of(result.model.metadata())) presentation.up = up;
+    result.model.set_presentation(
+        with_home(presentation, result.model.view(), result.model.grid()));
+    return result;
   });
 }
 

@@ -8,6 +8,7 @@
 
 #include "cli/parse.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/cpu/with_home.hpp"
 #include "voxdag/file/model/edited.hpp"
 #include "voxdag/file/report/human.hpp"
 
@@ -62,13 +63,13 @@ void refuse_attributes(const DagModel& file, const std::string& path,
 void write_edited(const EditArguments& arguments, Svdag dag, const Grid& grid,
                   const DagModel& source, const std::string& edit, MemoryBudget& memory,
                   Session& session) {
-  const DagModel model = edited(source, std::move(dag), grid, edit, &memory);
-  write_edited(arguments, model, arguments.compact || (!arguments.plain && source.is_compact()),
-               memory, session);
+  write_edited(arguments, edited(source, std::move(dag), grid, edit, &memory),
+               arguments.compact || (!arguments.plain && source.is_compact()), memory, session);
 }
 
-void write_edited(const EditArguments& arguments, const DagModel& model, bool compact,
+void write_edited(const EditArguments& arguments, DagModel model, bool compact,
                   MemoryBudget& memory, Session& session) {
+  model.set_presentation(with_home(model.metadata().presentation, model.view(), model.grid()));
   model.save(arguments.output, compact, {&memory, &session.progress});
   const std::uint64_t voxels = model.metadata().counts.voxels;
   session.bar.clear();

@@ -40,7 +40,7 @@ void write_edited(const EditArguments& arguments, Svdag dag, const Grid& grid,
                   const DagModel& source, const std::string& edit, MemoryBudget& memory,
                   Session& session);
 /// Writes `model` in the compact or the plain form. Prints a summary.
-void write_edited(const EditArguments& arguments, const DagModel& model, bool compact,
+void write_edited(const EditArguments& arguments, DagModel model, bool compact,
                   MemoryBudget& memory, Session& session);
 
 }  // namespace voxdag::cli

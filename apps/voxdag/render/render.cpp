@@ -12,6 +12,7 @@
 #include "render/render_mesh.hpp"
 #include "render/render_streamed.hpp"
 #include "voxdag/cpu/render_image.hpp"
+#include "voxdag/cpu/with_home.hpp"
 #include "voxdag/cuda/render_image.hpp"
 #include "voxdag/file/model/scene_model.hpp"
 #include "voxdag/render/film/frame_names.hpp"
@@ -23,6 +24,10 @@ void render_loaded(const RenderArguments& arguments, Session& session) {
   SceneModel file(session.subject, &session.progress);
   const VoxelSet scene = file.voxels();
   RenderOptions options = picture_options(arguments, scene.esvo() != nullptr);
+  show_as(file.metadata().presentation, options.view);
+  const bool is_usual_size = options.cube_pixels == RenderOptions{}.cube_pixels;
+  if (file.metadata().presentation.cubes && is_usual_size && !arguments.view.has("--cubes"))
+    options.cube_pixels = 0;
   std::optional<SceneModel> look = open_look(arguments.look, file, session);
   if (arguments.materials && look)
     look->show_materials(arguments.look, &session.progress);

@@ -104,6 +104,9 @@ void apply_view_file(RenderArguments& arguments, Session& session) {
   take("--sky", options.sky, saved.sky);
   take("--no-shadows", options.shadows, saved.shadows);
   take("--exposure", options.exposure, saved.exposure);
+  take("--tone", options.tone, saved.tone);
+  take("--background", options.background, saved.background);
+  take("--ground", options.ground, saved.ground);
   take("--ao", options.occlusion_samples, saved.occlusion_samples);
   take("--ao-distance", options.occlusion_distance, saved.occlusion_distance);
   take("--ao-cone", options.occlusion_cone, saved.occlusion_cone);

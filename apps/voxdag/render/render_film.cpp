@@ -56,7 +56,7 @@ CameraPath read_camera_path(const PathFile& file, const FilmScene& scene,
   ViewRequest first = options.view;
   check_own_view(file, first);
   const bool has_up = first.up || (!file.keys.empty() && file.keys.front().up);
-  if (!has_up && scene.find_up && !file.keys.empty())
+  if (!has_up && !first.scene_up && scene.find_up && !file.keys.empty())
     first.up = up_across(scene.find_up(), file.keys.front().target - file.keys.front().eye);
   return make_camera_path(file, scene.voxels, scene.grid,
                           static_cast<double>(options.width) / options.height, first);
@@ -65,7 +65,7 @@ CameraPath read_camera_path(const PathFile& file, const FilmScene& scene,
 /// Returns the direction towards the sun in the first frame.
 Vec3d sun_of_first_frame(const Film& film, const FilmScene& scene) {
   RenderOptions options = film.options;
-  options.view = as_request(film.path.at(film.path.start()));
+  options.view = as_request(film.path.at(film.path.start()), options.view);
   return static_cast<Vec3d>(RenderPlan(scene.voxels, scene.grid, options).setup().sky.sun);
 }
 

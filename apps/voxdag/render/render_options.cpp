@@ -61,6 +61,32 @@ Specular parse_specular(const std::string& text) {
   return specular;
 }
 
+ToneMap parse_tone(const std::string& text) {
+  if (text == "neutral") return ToneMap::kNeutral;
+  if (text == "agx") return ToneMap::kAgx;
+  if (text == "filmic") return ToneMap::kFilmic;
+  throw std::invalid_argument(fmt::format("\"{}\" is neither neutral nor agx nor filmic", text));
+}
+
+bool parse_on_off(const std::string& text) {
+  if (text != "on" && text != "off")
+    throw std::invalid_argument(fmt::format("\"{}\" is neither on nor off", text));
+  return text == "on";
+}
+
+Background parse_background(const std::string& text) {
+  constexpr std::pair<const char*, Background> kNames[] = {
+      {"sky", Background::kSky},
+      {"grey", Background::kGrey},
+      {"white", Background::kWhite},
+      {"black", Background::kBlack},
+      {"transparent", Background::kTransparent}};
+  for (const auto& [name, background] : kNames)
+    if (text == name || (text == "gray" && background == Background::kGrey)) return background;
+  throw std::invalid_argument(
+      fmt::format("\"{}\" is none of sky, grey, white, black and transparent", text));
+}
+
 /// Returns whether any light casts shadows with soft edges.
 bool has_soft_light(const RenderOptions& options) {
   return (options.with_sun && options.sun_degrees > 0) ||
@@ -93,11 +119,12 @@ ViewOptions add_view_options(const Command& command, ViewRequest& view, Winners&
 
 void add_sun_options(const Command& command, RenderOptions& options, Winners& winners) {
   const auto has_sun = [&options] { return options.with_sun; };
-  winners.push_back(
-      command
-          .parsed("--sun", options.sun, parse_direction, "X,Y,Z",
-                  "Direction towards the sun (default: over the viewer's left shoulder)")
-          .only_if(has_sun, "with --no-sun"));
+  winners.push_back(command
+                        .parsed("--sun", options.sun, parse_direction, "X,Y,Z",
+                                "Direction towards the sun (default: over the viewer's left "
+                                "shoulder; in an interior, "
+                                "through an opening)")
+                        .only_if(has_sun, "with --no-sun"));
   winners.push_back(command
                         .number("--sun-angle", options.sun_degrees,
                                 NumberRange::from(0, RenderLimits::kSunDegrees), "DEGREES",
@@ -139,9 +166,9 @@ void add_occlusion_options(const Command& command, RenderOptions& options, Winne
                                    "Ambient occlusion rays per pixel; 0: none"));
   winners.push_back(
       command
-          .parsed(
-              "--ao-distance", options.occlusion_distance, parse_positive, "LENGTH",
-              "Length of ambient occlusion rays, in world units (default: 0.15 of the grid's side)")
+          .parsed("--ao-distance", options.occlusion_distance, parse_positive, "LENGTH",
+                  "Length of ambient occlusion rays, in world units (default: 0.15 of the "
+                  "grid's side, in an interior 0.8)")
           .only_if(has_occlusion, "with --ao 0"));
   winners.push_back(
       command
@@ -164,6 +191,17 @@ void add_quality_options(const Command& command, RenderOptions& options, Winners
   winners.push_back(command.optional_number<float>(
       "--exposure", options.exposure, NumberRange::positive(), "FACTOR",
       "Factor that scales the light before tone mapping (default: chosen for the picture)"));
+  winners.push_back(command.parsed(
+      "--tone", options.tone, parse_tone, "neutral|agx|filmic",
+      "Curve that maps the light to the display. neutral keeps colours as they are up to bright "
+      "ones; agx lets bright colours turn pale; filmic raises the contrast (default: neutral)"));
+  winners.push_back(command.parsed(
+      "--ground", options.ground, parse_on_off, "on|off",
+      "Show the shadow of the scene on a ground under it, except in an interior, a section and "
+      "with --memory (default: on)"));
+  winners.push_back(command.parsed(
+      "--background", options.background, parse_background, "sky|grey|white|black|transparent",
+      "What the picture shows where nothing is; transparent writes alpha (default: sky)"));
 }
 
 Option add_mesh_options(const Command& command, MeshArguments& mesh) {
@@ -188,10 +226,11 @@ void add_filter_options(const Command& command, RenderArguments& arguments) {
   Winners& winners = arguments.view.winners;
   winners.push_back(
       command
-          .number("--cubes", arguments.options.cube_pixels,
-                  NumberRange::from(0, RenderLimits::kCubePixels), "PIXELS",
-                  "Show voxels as cubes if they are larger in the picture, and as smooth surfaces "
-                  "below half of that; 0: always cubes")
+          .number(
+              "--cubes", arguments.options.cube_pixels,
+              NumberRange::from(0, RenderLimits::kCubePixels), "PIXELS",
+              "Show voxels as cubes if they are larger in the picture, and as smooth surfaces "
+              "below half of that; 0: always cubes (default for voxels of voxel models and labels)")
           .only_if(shows_voxels, "with --mesh"));
   const Option filter = command
                             .flag("--filter", arguments.filter,
@@ -244,6 +283,8 @@ void add_path_options(const Command& command, PathArguments& path, const ViewOpt
 
 void add_render_options(const Command& command, Session& session, RenderArguments& arguments) {
   RenderOptions& options = arguments.options;
+  options.samples_per_pixel = 4;
+  options.ground = true;
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   command
       .text("-o,--output", arguments.output, "OUT",

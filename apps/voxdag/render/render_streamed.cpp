@@ -12,6 +12,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/stream/paged_cells.hpp"
 #include "voxdag/cpu/stream/stream_blocks.hpp"
+#include "voxdag/cpu/with_home.hpp"
 #include "voxdag/cuda/device_stream.hpp"
 #include "voxdag/file/report/human.hpp"
 #include "voxdag/render/coarse_cells.hpp"
@@ -42,6 +43,15 @@ struct Streamed {
   std::optional<DeviceStream> on_device;
 };
 
+/// Returns the options of a streamed picture. The lowest voxel, on which a ground lies, may not be
+/// loaded.
+RenderOptions streamed_options(const RenderArguments& arguments, const StreamBlocks& blocks) {
+  RenderOptions options = picture_options(arguments, true);
+  show_as(blocks.stream().metadata().presentation, options.view);
+  options.ground = false;
+  return options;
+}
+
 /// Renders a film. Blocks that a frame has loaded stay loaded for the next frame.
 void render_streamed_film(const RenderArguments& arguments, Streamed& streamed, Session& session) {
   StreamBlocks& blocks = streamed.blocks;
@@ -51,8 +61,8 @@ void render_streamed_film(const RenderArguments& arguments, Streamed& streamed, 
     return streamed.render(options, {}, &session.progress);
   };
   const auto find_up = [&] { return guess_up(CoarseCells::of(PagedCells(blocks), kUpLevel)); };
-  render_film(arguments, {blocks.view(), grid, render, find_up}, picture_options(arguments, true),
-              session);
+  render_film(arguments, {blocks.view(), grid, render, find_up},
+              streamed_options(arguments, blocks), session);
 }
 
 /// Renders a picture. Writes the outputs after each pass; each pass is finer than the one before.
@@ -68,7 +78,7 @@ void render_streamed_picture(const RenderArguments& arguments, Streamed& streame
     if (first_seconds == 0) first_seconds = watch.since_start();
   };
   const RenderedImage image =
-      streamed.render(picture_options(arguments, true), on_pass, &session.progress);
+      streamed.render(streamed_options(arguments, streamed.blocks), on_pass, &session.progress);
   const double seconds = watch.since_start();
   write(image);
   session.bar.clear();

@@ -134,6 +134,15 @@ class PartsRun {
     report_.node_bytes = dag.level_begin.back() * 4;
     report_.leaf_bytes = dag.leaf_blocks * 8;
     work_.report("write", 0);
+    if (job_.present) {
+      // The view depends on the finished DAG. So the file is written twice, first as a draft.
+      const std::filesystem::path draft = job_.work_folder / "draft.vdag";
+      write_vdag_from_runs(merge, dag, metadata, draft);
+      ranks_.barrier();
+      metadata.presentation = job_.present(draft);
+      ranks_.barrier();
+      if (ranks_.rank() == 0) std::filesystem::remove(draft);
+    }
     write_vdag_from_runs(merge, dag, metadata, job_.output);
     end(PartsStep::kWrite);
     const std::uint64_t peak = peak_resident_bytes();

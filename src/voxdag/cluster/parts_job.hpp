@@ -14,6 +14,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 
 #include "voxdag/builders/voxelize/grid_request.hpp"
 #include "voxdag/cluster/part_merge.hpp"
@@ -39,6 +40,9 @@ struct PartsJob {
   /// A DAG with more node words gets long pointers (stored/svdag/long_svdag.hpp). For tests.
   std::uint64_t most_plain_words = kMaxPlainWords;
   TransformRequest transform = {};  ///< Moves the mesh before the grid is placed.
+  /// Returns how the voxels of a file are to be seen. All ranks call it for the same file. Empty:
+  /// not known.
+  std::function<Presentation(const std::filesystem::path&)> present = {};
 };
 
 enum class PartsStep { kTriangles, kParts, kMerge, kNumber, kWrite };

@@ -32,7 +32,7 @@ class DeviceFrame {
   DeviceBuffer<Vec3f> radiance_, normal_, filtered_;
   DeviceBuffer<std::uint8_t> cell_pixels_;
   DeviceBuffer<FilterSample> filter_samples_;
-  DeviceBuffer<float> depth_, occlusion_, shadow_, steps_, beam_starts_;
+  DeviceBuffer<float> coverage_, depth_, occlusion_, shadow_, steps_, beam_starts_;
   DeviceBuffer<unsigned long long> rays_;
   RenderSetup setup_;
   FilterInput filter_input_;

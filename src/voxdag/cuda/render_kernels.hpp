@@ -66,6 +66,7 @@ VOXDAG_HD inline std::uint64_t resume_pixel(const PartialEsvoView& voxels, const
       static_cast<std::size_t>(tile.y) * static_cast<std::size_t>(setup.camera.width) +
       static_cast<std::size_t>(tile.x);
   const Vec3f radiance = image.radiance[place];
+  const float coverage = image.coverage[place];
   const float occlusion = image.occlusion != nullptr ? image.occlusion[place] : 0;
   const float shadow = image.shadow != nullptr ? image.shadow[place] : 0;
   TileScratch<1> scratch;
@@ -74,6 +75,7 @@ VOXDAG_HD inline std::uint64_t resume_pixel(const PartialEsvoView& voxels, const
   logs.known[at] = has_missed ? log.known() : PixelLogs::kDone;
   if (!has_missed) return static_cast<std::uint64_t>(rays);
   image.radiance[place] = radiance;
+  image.coverage[place] = coverage;
   if (image.occlusion != nullptr) image.occlusion[place] = occlusion;
   if (image.shadow != nullptr) image.shadow[place] = shadow;
   return 0;

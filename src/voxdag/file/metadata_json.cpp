@@ -36,6 +36,46 @@ std::map<std::string, std::string> read_build(const MetadataField& field) {
   return build;
 }
 
+Vec3d read_point(const MetadataField& field) {
+  field.expect_array(3);
+  return {field.at(std::size_t{0}).finite(), field.at(std::size_t{1}).finite(),
+          field.at(std::size_t{2}).finite()};
+}
+
+HomeView read_home(const MetadataField& field) {
+  HomeView view{{read_point(field.at("eye")), read_point(field.at("target")),
+                 read_point(field.at("up")), field.at("fov").finite()},
+                {}};
+  const Vec3d forward = view.target - view.eye, aside = cross(forward, view.up);
+  const double least = 1e-12 * dot(forward, forward) * dot(view.up, view.up);
+  if (!(dot(aside, aside) > least && least > 0))
+    field.fail("has no direction, or an up vector along it");
+  if (!(view.vertical_fov_degrees >= kMinFovDegrees && view.vertical_fov_degrees < 180))
+    field.at("fov").fail("not an angle from 0.000001 to below 180 degrees");
+  if (!field.value.contains("sun")) return view;
+  view.sun = read_point(field.at("sun"));
+  if (!(dot(*view.sun, *view.sun) > 0)) field.at("sun").fail("has no direction");
+  return view;
+}
+
+Presentation read_presentation(const MetadataField& root) {
+  Presentation presentation;
+  if (root.value.contains("up")) {
+    const std::string up = root.at("up").text();
+    if (up != "x" && up != "y" && up != "z") root.at("up").fail("is none of x, y and z");
+    presentation.up = up[0];
+  }
+  if (root.value.contains("unit")) presentation.unit = root.at("unit").text();
+  if (root.value.contains("home")) presentation.home = read_home(root.at("home"));
+  if (root.value.contains("cubes")) {
+    if (!root.at("cubes").value.is_boolean()) root.at("cubes").fail("is neither true nor false");
+    presentation.cubes = root.at("cubes").value.get<bool>();
+  }
+  return presentation;
+}
+
+MetadataJson point_json(Vec3d v) { return MetadataJson::array({v.x, v.y, v.z}); }
+
 }  // namespace
 
 MetadataJson parse_metadata_json(std::string_view text) {
@@ -68,6 +108,20 @@ void finish_metadata_json(MetadataJson& json, const SceneMetadata& metadata) {
       {"name", source.name}, {"vertices", source.vertices}, {"triangles", source.triangles}};
   json["program"] = metadata.program;
   json["build"] = metadata.build;
+  add_presentation(json, metadata.presentation);
+}
+
+void add_presentation(MetadataJson& json, const Presentation& presentation) {
+  if (presentation.up) json["up"] = std::string(1, *presentation.up);
+  if (!presentation.unit.empty()) json["unit"] = presentation.unit;
+  if (const auto& home = presentation.home) {
+    json["home"] = {{"eye", point_json(home->eye)},
+                    {"target", point_json(home->target)},
+                    {"up", point_json(home->up)},
+                    {"fov", home->vertical_fov_degrees}};
+    if (home->sun) json["home"]["sun"] = point_json(*home->sun);
+  }
+  if (presentation.cubes) json["cubes"] = true;
 }
 
 void read_scene_metadata(const MetadataField& root, SceneMetadata& metadata) {
@@ -75,6 +129,7 @@ void read_scene_metadata(const MetadataField& root, SceneMetadata& metadata) {
   metadata.source = read_source(root.at("source"));
   metadata.program = root.at("program").text();
   metadata.build = read_build(root.at("build"));
+  metadata.presentation = read_presentation(root);
 }
 
 }  // namespace voxdag

@@ -68,10 +68,13 @@ std::string metadata_text(const MetadataJson& json);
 
 /// Begins the document, with "grid".
 MetadataJson begin_metadata_json(const SceneMetadata& metadata);
-/// Adds "source", "program" and "build", the last members of the document.
+/// Adds "source", "program" and "build", and the presentation: the last members of the document.
 void finish_metadata_json(MetadataJson& json, const SceneMetadata& metadata);
 
-/// Reads "grid", "source", "program" and "build" from the document's root.
+/// Adds "up", "unit", "home" and "cubes", as far as they are known.
+void add_presentation(MetadataJson& json, const Presentation& presentation);
+
+/// Reads "grid", "source", "program", "build" and the presentation from the document's root.
 void read_scene_metadata(const MetadataField& root, SceneMetadata& metadata);
 
 }  // namespace voxdag

@@ -2,9 +2,11 @@
 /// The metadata that all scene files have in common, DAGs and ESVOs.
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "voxdag/core/grid.hpp"
+#include "voxdag/core/view.hpp"
 
 namespace voxdag {
 
@@ -16,6 +18,21 @@ struct VdagSource {
   friend bool operator==(const VdagSource&, const VdagSource&) = default;
 };
 
+/// How a scene is to be seen and measured, as far as it is known.
+struct Presentation {
+  std::optional<char> up;        ///< The axis that points up: 'x', 'y' or 'z'.
+  std::string unit;              ///< Of the coordinates: mm, cm, m, in or ft; empty: not known.
+  std::optional<HomeView> home;  ///< Its up vector is that axis.
+  bool cubes = false;            ///< Whether voxels are cubes, not samples of smooth surfaces.
+
+  /// Returns the unit vector that points up.
+  std::optional<Vec3d> up_vector() const {
+    if (!up) return std::nullopt;
+    return Vec3d{*up == 'x' ? 1.0 : 0, *up == 'y' ? 1.0 : 0, *up == 'z' ? 1.0 : 0};
+  }
+  friend bool operator==(const Presentation&, const Presentation&) = default;
+};
+
 /// The metadata that DAGs and ESVOs share. It must depend on the input alone, so that equal inputs
 /// make equal files: no times, no folders, no thread counts, and not the choice between two
 /// equivalent methods.
@@ -24,6 +41,7 @@ struct SceneMetadata {
   VdagSource source;
   std::string program;                       ///< The program that wrote the file: "voxdag 0.1.0".
   std::map<std::string, std::string> build;  ///< Settings that shape the result: "cover": "exact".
+  Presentation presentation;
   friend bool operator==(const SceneMetadata&, const SceneMetadata&) = default;
 };
 

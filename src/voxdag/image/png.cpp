@@ -2,6 +2,7 @@
 
 #include <png.h>
 
+#include <algorithm>
 #include <bit>
 #include <csetjmp>
 #include <cstring>
@@ -144,7 +145,8 @@ DecodedImage decode_png(std::span<const std::uint8_t> bytes, const std::string& 
   return image;
 }
 
-void write_png(const std::filesystem::path& path, const ImageRgb8& image) {
+void write_png(const std::filesystem::path& path, const ImageRgb8& image,
+               std::span<const std::uint8_t> alpha) {
   if (image.width <= 0 || image.height <= 0 ||
       image.pixels.size() != ImageRgb8(image.width, image.height).pixels.size())
     throw Error(path.string(), "",
@@ -153,11 +155,18 @@ void write_png(const std::filesystem::path& path, const ImageRgb8& image) {
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
-  png.format = PNG_FORMAT_RGB;
+  png.format = alpha.empty() ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
+  std::vector<std::uint8_t> rgba(4 * alpha.size());
+  for (std::size_t i = 0; i < alpha.size(); ++i) {
+    std::copy_n(image.pixels.begin() + static_cast<std::ptrdiff_t>(3 * i), 3,
+                rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
+    rgba[4 * i + 3] = alpha[i];
+  }
+  const std::uint8_t* const pixels = alpha.empty() ? image.pixels.data() : rgba.data();
   std::vector<std::uint8_t> bytes(PNG_IMAGE_PNG_SIZE_MAX(png));
   png_alloc_size_t size = bytes.size();
   const int is_written =
-      png_image_write_to_memory(&png, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr);
+      png_image_write_to_memory(&png, bytes.data(), &size, 0, pixels, 0, nullptr);
   png_image_free(&png);
   if (is_written == 0) throw Error(path.string(), "", std::string("cannot write: ") + png.message);
   write_whole_file(path, {reinterpret_cast<const char*>(bytes.data()), size});

@@ -11,8 +11,10 @@
 namespace voxdag {
 
 /// Writes 8-bit RGB marked as sRGB. The file appears at `path` only when it is complete. Throws
-/// Error if it cannot be written or the image has no pixels.
-void write_png(const std::filesystem::path& path, const ImageRgb8& image);
+/// Error if it cannot be written or the image has no pixels. `alpha` has one value for each pixel;
+/// empty: the file has no alpha.
+void write_png(const std::filesystem::path& path, const ImageRgb8& image,
+               std::span<const std::uint8_t> alpha = {});
 
 /// Returns whether the bytes begin with the signature of a PNG.
 bool is_png(std::span<const std::uint8_t> bytes);

@@ -61,12 +61,12 @@ FormatCustom custom_of(const std::string& file_name, const std::string& format) 
   const auto is_one_of = [&](std::initializer_list<std::string_view> endings) {
     return std::find(endings.begin(), endings.end(), ending) != endings.end();
   };
-  if (is_one_of({".gltf", ".glb", ".dae"})) return {1, "m"};
-  if (ending == ".3mf") return {2, "mm"};
+  if (is_one_of({".gltf", ".glb", ".dae"})) return {1, "m", true};
+  if (ending == ".3mf") return {2, "mm", true};
   if (is_one_of({".obj", ".ply", ".off", ".fbx", ".3ds", ".blend", ".x", ".x3d", ".lwo", ".ac",
                  ".b3d", ".ms3d", ".vdb"}))
     return {};
-  return {2, ""};
+  return {2, "", true};
 }
 
 void add_settings(const TransformRequest& request, std::map<std::string, std::string>& settings) {
@@ -148,6 +148,20 @@ bool InputTransform::keeps_axes() const {
     return std::abs(column.x) + std::abs(column.y) + std::abs(column.z) == 1 &&
            std::max({std::abs(column.x), std::abs(column.y), std::abs(column.z)}) == 1;
   });
+}
+
+FormatCustom custom_after(const TransformRequest& request, const FormatCustom& custom) {
+  FormatCustom after;
+  const auto [given, to] = from_and_to(request.unit);
+  if (request.scale == 1) after.unit = request.unit.empty() ? custom.unit : std::string(to);
+  if (!custom.has_up && request.up.empty()) return after;
+  const std::string_view from = from_and_to(request.up).first;
+  Vec3d up{};
+  up[from.empty() ? custom.up : axis_of(from)] = 1;
+  const Vec3d turned = InputTransform(request, custom).turned(up);
+  for (int axis = 0; axis < 3; ++axis)
+    if (turned[axis] == 1) after.up = axis, after.has_up = true;
+  return after;
 }
 
 void move_mesh(MeshWithAppearance& source, const InputTransform& transform, Work work) {

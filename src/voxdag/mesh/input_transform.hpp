@@ -14,8 +14,9 @@ namespace voxdag {
 
 /// The up axis and the unit that a format has by its specification or by custom.
 struct FormatCustom {
-  int up = 1;        ///< The axis that points up: 0 (x), 1 (y) or 2 (z).
-  std::string unit;  ///< A unit of TransformRequest; empty: the format has none.
+  int up = 1;           ///< The axis that points up: 0 (x), 1 (y) or 2 (z).
+  std::string unit;     ///< A unit of TransformRequest; empty: the format has none.
+  bool has_up = false;  ///< Whether the format has an up axis; if not, y is assumed.
 };
 /// Returns the customs of `format` ("obj"), or, if it is empty, of the format that the ending of
 /// the file's name tells. z is up in .stl, .3mf and files of points and volumes, y in others;
@@ -67,6 +68,9 @@ class InputTransform {
   double factor_ = 1;
   Vec3d translate_{};
 };
+
+/// Returns the up axis and the unit of the coordinates after the move, as far as they are known.
+FormatCustom custom_after(const TransformRequest& request, const FormatCustom& custom);
 
 /// Moves vertices, normals and heights of a mesh in double precision, and sets Mesh::origin anew.
 /// Throws Error if a vertex that a triangle uses leaves the range of float32, and Cancelled.

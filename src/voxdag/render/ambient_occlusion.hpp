@@ -10,6 +10,7 @@
 /// lengths are distributed so that the mean is equal. Rays may end at cells that subtend a given
 /// solid angle: the result is darker, but exact near contacts.
 #include "voxdag/render/basis.hpp"
+#include "voxdag/render/ground.hpp"
 #include "voxdag/render/tile.hpp"
 #include "voxdag/render/tile_scratch.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
@@ -19,9 +20,11 @@ namespace voxdag {
 /// Returns ray `i` of a point. The directions are distributed around the shading normal. Directions
 /// below the plane of the surface itself, whose normal may differ, are mirrored at that plane.
 /// `longest` is in units of the grid's side; `cone` as in RenderSettings::occlusion_cone.
+/// `make_ray(direction, t_max)` makes the ray.
+template <class MakeRay>
 VOXDAG_HD inline CastRay occlusion_ray(const SampleTables& tables, float longest, float cone,
-                                       const SurfacePoint& point, const PixelSamples& pixel,
-                                       int i) {
+                                       const SurfacePoint& point, const PixelSamples& pixel, int i,
+                                       const MakeRay& make_ray) {
   const HemisphereSample sample = tables.hemisphere[pixel.set * tables.hemisphere_count + i];
   const Basis<float> basis = make_basis(point.normal);
   const Point2f flat = pixel.rotated({sample.direction.x, sample.direction.y});
@@ -29,10 +32,17 @@ VOXDAG_HD inline CastRay occlusion_ray(const SampleTables& tables, float longest
   const float above = dot(direction, point.face);
   if (above < 0) direction = direction - point.face * (2 * above);
   CastRay ray;
-  ray.ray = make_grid_ray(point.start, direction, 0, sample.reach * longest);
+  ray.ray = make_ray(direction, sample.reach * longest);
   ray.stop.at_start = point.cell_side;
   ray.stop.per_t = cone * static_cast<float>(ray.ray.t_scale);
   return ray;
+}
+VOXDAG_HD inline CastRay occlusion_ray(const SampleTables& tables, float longest, float cone,
+                                       const SurfacePoint& point, const PixelSamples& pixel,
+                                       int i) {
+  return occlusion_ray(tables, longest, cone, point, pixel, i, [&](Vec3f direction, float t_max) {
+    return make_grid_ray(point.start, direction, 0, t_max);
+  });
 }
 
 /// Sets scratch.open for the pixels that show something. Returns the number of rays.
@@ -56,7 +66,11 @@ VOXDAG_HD inline int trace_occlusion(const Caster& caster, const RenderSetup& se
         const int pixel = scratch.active[i / rays];
         CastRay ray =
             occlusion_ray(setup.tables, settings.occlusion_distance, settings.occlusion_cone,
-                          scratch.points[pixel], scratch.pixels[pixel], first + i % rays);
+                          scratch.points[pixel], scratch.pixels[pixel], first + i % rays,
+                          [&](Vec3f direction, float t_max) {
+                            return ray_from(setup, scratch.samples[pixel], scratch.points[pixel],
+                                            direction, 0, t_max);
+                          });
         limit_to(setup.section, ray.ray);
         return ray;
       },

@@ -4,6 +4,37 @@
 #include <utility>
 
 namespace voxdag {
+namespace {
+
+/// Lowers `best` to the lowest voxel below a node, whose cell begins at `at`, in cells of `level`.
+template <class Nodes>
+void find_lowest(const Nodes& nodes, typename Nodes::Node node, int level, std::int64_t at,
+                 int axis, std::int64_t& best) {
+  if (level == nodes.levels()) {
+    best = at;
+    return;
+  }
+  const std::uint32_t mask = nodes.child_mask(node, level);
+  for (const int side : {0, 1}) {
+    const std::int64_t child_at = 2 * at + side;
+    if (child_at << (nodes.levels() - level - 1) >= best) return;
+    for (int i = 0; i < 8; ++i)
+      if ((mask >> i & 1u) != 0 && (i >> axis & 1) == side &&
+          child_at << (nodes.levels() - level - 1) < best)
+        find_lowest(nodes, level + 1 == nodes.levels() ? node : nodes.child(node, level, i),
+                    level + 1, child_at, axis, best);
+  }
+}
+
+}  // namespace
+
+std::int64_t lowest_voxel(const VoxelSet& scene, int axis) {
+  return visit_nodes(scene, [&](const auto& nodes) {
+    std::int64_t best = std::int64_t{1} << nodes.levels();
+    if (!nodes.is_empty()) find_lowest(nodes, nodes.root(), 0, 0, axis, best);
+    return best;
+  });
+}
 
 CoarseCells::CoarseCells(const VoxelSet& scene, int max_level)
     : CoarseCells(visit_nodes(scene, [&](const auto& nodes) { return of(nodes, max_level); })) {}

@@ -64,6 +64,10 @@ class CoarseCells {
   Box3i bounds_ = Box3i::empty();
 };
 
+/// Returns the lowest coordinate of the voxels along an axis, in voxels; the grid's side if there
+/// are none.
+std::int64_t lowest_voxel(const VoxelSet& scene, int axis);
+
 /// Returns the likely up direction: y, or z if the scene lies flat on z, or stands on much more of
 /// the ground along z than along y.
 Vec3d guess_up(const CoarseCells& scene);

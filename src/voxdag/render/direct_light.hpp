@@ -5,6 +5,7 @@
 /// section 4: shadow rays run from each view sample to points on the light. A beam from the sample
 /// to the light shortens the rays to the interval in which the beam meets anything. If the beam
 /// meets nothing, no ray is cast.
+#include "voxdag/render/ground.hpp"
 #include "voxdag/render/light_beam.hpp"
 #include "voxdag/render/light_sample.hpp"
 #include "voxdag/render/specular.hpp"
@@ -38,7 +39,7 @@ VOXDAG_HD inline int find_shadowed_pixels(const Nodes& nodes, const RenderSetup&
     const DirectionBounds bounds = directions_to(light, point.start.position);
     if (!reach_above(bounds, point.normal) || !reach_above(bounds, point.face)) continue;
     LightInterval interval = light_interval(light);
-    if (setup.settings.beams && light.is_extended())
+    if (setup.settings.beams && light.is_extended() && !(scratch.samples[pixel].ground > 0))
       interval = cast_light_beam(nodes, light, point);
     if (interval.is_clear) continue;
     scratch.intervals[pixel] = interval;
@@ -63,7 +64,8 @@ VOXDAG_HD inline void trace_shadow_rays(const Caster& caster, const RenderSetup&
         CastRay ray;
         if (!(sample.weight > 0)) return ray;
         const LightInterval& interval = scratch.intervals[pixel];
-        ray.ray = make_grid_ray(point.start, sample.direction, interval.first, interval.last);
+        ray.ray = ray_from(setup, scratch.samples[pixel], point, sample.direction, interval.first,
+                           interval.last);
         limit_to(setup.section, ray.ray);
         // The ray ends at cells of the size that the picture shows, so that shadows and picture
         // agree.

@@ -53,7 +53,8 @@ float automatic_exposure(std::span<const Vec3f> radiance, std::span<const float>
       static_cast<std::ptrdiff_t>(ExposureRule::kBright * static_cast<double>(luminances.size()));
   std::nth_element(luminances.begin(), bright, luminances.end());
   const double white = std::max(static_cast<double>(*bright), kMin);
-  return static_cast<float>(std::min(ExposureRule::kMiddle / mean, ExposureRule::kWhite / white));
+  return static_cast<float>(
+      std::min({ExposureRule::kMiddle / mean, ExposureRule::kWhite / white, ExposureRule::kMost}));
 }
 
 }  // namespace voxdag

@@ -13,6 +13,7 @@
 namespace voxdag {
 namespace {
 
+constexpr int kCoarseLevel = 7;
 constexpr double kOutsideFov = 35, kInsideFov = 65;  // degrees, vertical
 /// Rooms and courtyards are less open than this, and fill more of their bounds than this. Statues
 /// in folded drapery, and objects with a complex inside, do not fulfil both conditions.
@@ -113,6 +114,15 @@ void check(const View& view) {
     throw Error("the camera's up vector points along the view");
 }
 
+/// Returns whether the view's eye is within the scene's bounds.
+bool is_inside(const View& view, const CoarseCells& scene, const Grid& grid) {
+  const double cell_size = grid.cell_size(scene.level());
+  const Vec3d eye = (view.eye - grid.origin) * (1 / cell_size);
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(eye[axis] > scene.bounds().lo[axis] && eye[axis] < scene.bounds().hi[axis])) return false;
+  return true;
+}
+
 }  // namespace
 
 Vec3d up_across(Vec3d up, Vec3d forward) {
@@ -130,14 +140,15 @@ View frame_scene(const VoxelSet& voxels, const Grid& grid, double aspect,
     view.eye = *request.eye;
     view.target = *request.target;
     if (!request.up)
-      view.up = up_across(guess_up(CoarseCells(voxels, kUpLevel)), view.target - view.eye);
+      view.up =
+          up_across(request.scene_up ? *request.scene_up : guess_up(CoarseCells(voxels, kUpLevel)),
+                    view.target - view.eye);
     check(view);
     return view;
   }
 
-  constexpr int kCoarseLevel = 7;
   const CoarseCells scene(voxels, kCoarseLevel);
-  if (!request.up) view.up = guess_up(scene);
+  if (!request.up) view.up = request.scene_up ? *request.scene_up : guess_up(scene);
   view.eye = request.eye.value_or(Vec3d{});
   check_numbers(view);  // before its up vector and angle are used
   const Compass compass(view.up);
@@ -151,16 +162,23 @@ View frame_scene(const VoxelSet& voxels, const Grid& grid, double aspect,
     return view;
   }
 
-  const SceneExplorer explorer(voxels, grid);
-
-  if (!request.target && fills_its_box(scene) &&
-      openness(scene, explorer, grid, compass) < kInsideOpenness) {
-    const auto inside =
-        inside_views(scene, explorer, grid, compass, view.vertical_fov_degrees, aspect);
-    if (!inside.empty()) return inside.front().view;
+  const bool has_home = request.home && request.home->up == view.up && !request.target;
+  if (has_home && is_inside(*request.home, scene, grid)) {
+    View inside = *request.home;
+    if (request.vertical_fov_degrees) inside.vertical_fov_degrees = *request.vertical_fov_degrees;
+    return inside;
+  }
+  if (!has_home && !request.target && fills_its_box(scene)) {
+    const SceneExplorer explorer(voxels, grid);
+    if (openness(scene, explorer, grid, compass) < kInsideOpenness) {
+      const auto inside =
+          inside_views(scene, explorer, grid, compass, view.vertical_fov_degrees, aspect);
+      if (!inside.empty()) return inside.front().view;
+    }
   }
   const double fov = request.vertical_fov_degrees.value_or(kOutsideFov);
-  const Vec3d forward = compass.direction(2.2, -0.42);
+  const Vec3d forward = has_home ? normalized(request.home->target - request.home->eye)
+                                 : compass.direction(2.2, -0.42);
   View outside = view_from_outside(scene, grid, forward, view.up, fov, aspect);
   if (request.target) {
     outside.eye = outside.eye + (*request.target - outside.target);
@@ -170,8 +188,29 @@ View frame_scene(const VoxelSet& voxels, const Grid& grid, double aspect,
   return outside;
 }
 
+HomeView home_view(const VoxelSet& voxels, const Grid& grid, const std::optional<Vec3d>& up) {
+  constexpr double kAspect = 16.0 / 9, kSteps = 1024;
+  ViewRequest request;
+  request.scene_up = up;
+  HomeView home{frame_scene(voxels, grid, kAspect, request), {}};
+  const double step = grid.side() / kSteps;
+  for (Vec3d* point : {&home.eye, &home.target})
+    for (int axis = 0; axis < 3; ++axis)
+      (*point)[axis] =
+          grid.origin[axis] + std::round(((*point)[axis] - grid.origin[axis]) / step) * step;
+  if (is_inside(home, CoarseCells(voxels, kCoarseLevel), grid))
+    home.sun = interior_sun(voxels, grid, home, kAspect);
+  return home;
+}
+
+bool shows_interior(const VoxelSet& voxels, const Grid& grid, const ViewRequest& request,
+                    const View& view) {
+  // Without a home only frame_scene() knows that the scene is an interior.
+  if (request.home ? !request.home->sun : request.eye || request.target) return false;
+  return is_inside(view, CoarseCells(voxels, kCoarseLevel), grid);
+}
+
 std::vector<View> scene_views(const VoxelSet& voxels, const Grid& grid, double aspect, int count) {
-  constexpr int kCoarseLevel = 7;
   constexpr double kApart = 0.12;  // fraction of the grid's side, for views with similar directions
   constexpr double kOtherWay = 0.3;  // least cosine of similar directions
   const CoarseCells scene(voxels, kCoarseLevel);

@@ -80,4 +80,31 @@ std::vector<InsideView> inside_views(const CoarseCells& scene, const SceneExplor
   return views;
 }
 
+Vec3d interior_sun(const VoxelSet& voxels, const Grid& grid, const View& view, double aspect) {
+  constexpr int kColumns = 24, kRows = 14, kSuns = 200;  // half of the suns are below the horizon
+  const SceneExplorer explorer(voxels, grid);
+  const Compass compass(view.up);
+  const Camera camera = make_camera(view, 1000, static_cast<int>(1000 / aspect) + 1);
+  const double cell_size = grid.side() / 512;  // of the explorer
+  std::vector<Vec3d> seen;
+  for (int row = 0; row < kRows; ++row)
+    for (int column = 0; column < kColumns; ++column) {
+      const Vec3d ray = normalized(camera.direction((column + 0.5) * camera.width / kColumns,
+                                                    (row + 0.5) * camera.height / kRows));
+      const double distance = explorer.distance(camera.eye, ray);
+      if (distance < HUGE_VAL) seen.push_back(camera.eye + ray * (distance - 2 * cell_size));
+    }
+  Vec3d best = compass.direction(2.5, 1.2);
+  int most = 0;
+  for (int i = 0; i < kSuns / 2; ++i) {  // the steepest first
+    Vec3d sun = sphere_direction(compass, i, kSuns);
+    for (int axis = 0; axis < 3; ++axis) sun[axis] = std::round(sun[axis] * 1024) / 1024;
+    int lit = 0;
+    for (const Vec3d point : seen) lit += explorer.distance(point, sun) < HUGE_VAL ? 0 : 1;
+    if (lit > most) most = lit, best = sun;
+  }
+  for (int axis = 0; axis < 3; ++axis) best[axis] = std::round(best[axis] * 1024) / 1024;
+  return best;
+}
+
 }  // namespace voxdag

@@ -6,12 +6,14 @@
 #include "voxdag/render/filter_kind.hpp"
 #include "voxdag/render/light.hpp"
 #include "voxdag/render/render_setup.hpp"
+#include "voxdag/render/tone_map.hpp"
 #include "voxdag/render/view.hpp"
 
 namespace voxdag {
 
-/// The longest occlusion ray by default, as a fraction of the grid's side.
-inline constexpr double kOcclusionDistance = 0.15;
+/// The longest occlusion ray by default, as a fraction of the grid's side; and that of an interior
+/// (see shows_interior()), where light comes from far.
+inline constexpr double kOcclusionDistance = 0.15, kInteriorOcclusion = 0.8;
 
 /// The default direction towards the sun, as factors of the picture's right, up and back.
 inline constexpr Vec3d kDefaultSun{-0.6, 0.9, 0.25};
@@ -35,21 +37,26 @@ struct SectionOptions {
   std::optional<Plane> plane;
 };
 
+/// What a picture shows where nothing is. Only the sky's own colours depend on the light.
+inline constexpr float kGreyBackground = 0.36f;  ///< Linear light of the display.
+enum class Background { kSky, kGrey, kWhite, kBlack, kTransparent };
+
 struct RenderOptions {
   int width = 1920, height = 1080;  ///< Pixels; at least 1 each.
   ViewRequest view;                 ///< frame_scene finds the parts that are not set.
   int samples_per_pixel = 1;        ///< At least 1.
 
   bool with_sun = true;
-  std::optional<Vec3d> sun;       ///< Towards the sun; if not set, over the viewer's left shoulder.
-  double sun_degrees = 0.53;      ///< The sun's angular diameter; 0: hard shadows.
+  std::optional<Vec3d> sun;   ///< Towards the sun; if not set, that of the interior, or over the
+                              ///< viewer's left shoulder.
+  double sun_degrees = 0.53;  ///< The sun's angular diameter; 0: hard shadows.
   std::vector<LightSpec> lights;  ///< Besides the sun; at most RenderSetup::kMaxLights - 1.
   bool shadows = true;
   int shadow_samples = 16;  ///< Shadow rays per pixel and light with soft edges.
   float sky = 1;            ///< Factor on the light of the sky, and on the sky in the picture.
 
   int occlusion_samples = 64;  ///< Rays of ambient occlusion per pixel; 0: none.
-  /// Length of occlusion rays, in world units; 0 means kOcclusionDistance of the grid's side.
+  /// Length of occlusion rays, in world units; 0 means kOcclusionDistance or kInteriorOcclusion.
   double occlusion_distance = 0;
   /// Occlusion rays end at cells that subtend this solid angle, in steradians; 0 means cells of the
   /// size of the surface's cell. The paper uses 0.07.
@@ -70,6 +77,11 @@ struct RenderOptions {
   /// Smooths voxels larger than pixels (post_filter.hpp), but not a source's points.
   FilterKind filter = FilterKind::kNone;
   float exposure = 0;  ///< Factor before tone mapping; 0: chosen to suit the picture.
+  ToneMap tone = ToneMap::kNeutral;
+  Background background = Background::kSky;
+  /// Shadows on a ground under the scene. Not in an interior or a section, and only if an axis is
+  /// up.
+  bool ground = false;
 
   bool with_normal = true;     ///< Fill RenderedImage::normal; the guided filter does, too.
   bool with_occlusion = true;  ///< Fill RenderedImage::occlusion; the guided filter does, too.
@@ -85,6 +97,8 @@ struct RenderedImage {
   View view;                     ///< The view that it shows.
   float exposure = 0;            ///< The factor that was applied.
   std::vector<Vec3f> rgb;        ///< Tone mapped, linear light in [0,1]: encode as sRGB to display.
+  std::vector<float> coverage;   ///< The part of the pixel's samples that hit a surface, 0 to 1.
+  bool has_alpha = false;        ///< The background is transparent: alpha is the coverage.
   std::vector<Vec3f> radiance;   ///< Linear, before exposure and tone mapping; filtered.
   std::vector<float> depth;      ///< World units along the view axis; +infinity where nothing is.
   std::vector<Vec3f> normal;     ///< World space, unit length; zero where nothing is.
@@ -98,9 +112,9 @@ struct RenderedImage {
 /// Returns the addresses of the image's values; null for values that it does not have.
 inline ImageBuffers buffers_of(RenderedImage& image) {
   const auto values = [](auto& pixels) { return pixels.empty() ? nullptr : pixels.data(); };
-  return {values(image.radiance),   values(image.depth),  values(image.normal),
-          values(image.occlusion),  values(image.shadow), values(image.steps),
-          values(image.cell_pixels)};
+  return {values(image.radiance),    values(image.depth),   values(image.normal),
+          values(image.occlusion),   values(image.shadow),  values(image.steps),
+          values(image.cell_pixels), values(image.coverage)};
 }
 
 }  // namespace voxdag

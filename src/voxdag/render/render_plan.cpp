@@ -7,6 +7,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/render/coarse_cells.hpp"
 #include "voxdag/render/exposure.hpp"
 #include "voxdag/render/tone_map.hpp"
 
@@ -60,13 +61,15 @@ SampleSets make_samples(const RenderOptions& options) {
 }
 
 /// Returns the sky with the sun's direction. The default direction shows the shapes in view well.
-Sky make_sky(const Camera& camera, const View& view, const RenderOptions& options) {
+Sky make_sky(const Camera& camera, const View& view, const RenderOptions& options,
+             const std::optional<Vec3d>& interior_sun) {
   Sky sky;
   const Vec3d up = normalized(view.up);
   const Vec3d right = normalized(camera.right);
   const Vec3d back = cross(right, up);
-  const Vec3d sun =
-      options.sun.value_or(up * kDefaultSun.y + right * kDefaultSun.x + back * kDefaultSun.z);
+  const Vec3d sun = options.sun ? *options.sun
+                                : interior_sun.value_or(up * kDefaultSun.y + right * kDefaultSun.x +
+                                                        back * kDefaultSun.z);
   const double length2 = dot(sun, sun);
   if (!(length2 > 0 && length2 < HUGE_VAL))
     throw Error("the direction of the sun must be finite and not zero");
@@ -78,6 +81,24 @@ Sky make_sky(const Camera& camera, const View& view, const RenderOptions& option
   sky.ground = sky.ground * options.sky;
   if (!options.with_sun) sky.sun_light = {};
   return sky;
+}
+
+/// Returns the ground under the voxels; none if no axis points up.
+Ground make_ground(const VoxelSet& voxels, const Grid& grid, Vec3d up) {
+  constexpr int kLevel = 7;
+  int axis = 0;
+  while (axis < 3 && up[axis] != length(up)) ++axis;
+  const CoarseCells cells(voxels, kLevel);
+  if (axis == 3 || cells.cells().empty()) return {};
+  const double cell_size = grid.cell_size(cells.level());
+  const Vec3d lo = static_cast<Vec3d>(cells.bounds().lo) * cell_size,
+              hi = static_cast<Vec3d>(cells.bounds().hi) * cell_size;
+  Ground ground;
+  ground.middle = grid.origin + (lo + hi) * 0.5;
+  ground.middle[axis] =
+      grid.origin[axis] + static_cast<double>(lowest_voxel(voxels, axis)) * grid.voxel_size;
+  ground.radius = length(hi - lo);
+  return ground;
 }
 
 /// Returns the section in the coordinates of rays.
@@ -104,7 +125,10 @@ RaySection make_section(const Grid& grid, const SectionOptions& options) {
 }  // namespace
 
 RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOptions& options)
-    : samples_(make_samples(checked(options))), exposure_(options.exposure) {
+    : samples_(make_samples(checked(options))),
+      exposure_(options.exposure),
+      tone_(options.tone),
+      background_(options.background) {
   assert(grid.levels == voxels.levels());
   const std::size_t pixels =
       static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
@@ -113,6 +137,7 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
   image_.view =
       frame_scene(voxels, grid, static_cast<double>(options.width) / options.height, options.view);
   image_.radiance.resize(pixels);
+  image_.coverage.resize(pixels);
   image_.depth.resize(pixels);
   const bool is_guided = options.filter == FilterKind::kGuided;
   if (options.with_normal || is_guided) image_.normal.resize(pixels);
@@ -123,10 +148,18 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
 
   setup_.grid = grid;
   setup_.camera = make_camera(image_.view, options.width, options.height);
-  setup_.sky = make_sky(setup_.camera, image_.view, options);
+  const double aspect = static_cast<double>(options.width) / options.height;
+  const bool is_interior = shows_interior(voxels, grid, options.view, image_.view);
+  std::optional<Vec3d> sun_inside;
+  if (is_interior)
+    sun_inside = options.view.home ? options.view.home->sun
+                                   : interior_sun(voxels, grid, image_.view, aspect);
+  setup_.sky = make_sky(setup_.camera, image_.view, options, sun_inside);
   setup_.tables = samples_.view();
   setup_.look = options.look;
   setup_.section = make_section(grid, options.section);
+  if (options.ground && !is_interior && !setup_.section.is_on)
+    setup_.ground = make_ground(voxels, grid, image_.view.up);
   setup_.image = buffers_of(image_);
 
   RenderSettings& settings = setup_.settings;
@@ -137,6 +170,7 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
       per_view_sample(options.occlusion_samples, options.samples_per_pixel);
   settings.occlusion_distance =
       static_cast<float>(options.occlusion_distance > 0 ? options.occlusion_distance / setup_.side()
+                         : is_interior                  ? kInteriorOcclusion
                                                         : kOcclusionDistance);
   settings.occlusion_cone = static_cast<float>(std::sqrt(options.occlusion_cone));
   settings.lod_pixels = options.lod_pixels;
@@ -156,12 +190,42 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
     setup_.lights[setup_.light_count++] = make_light(light, grid);
 }
 
+Vec3f RenderPlan::background_at(Vec3f sky) const {
+  switch (background_) {
+    case Background::kSky:
+      return tone_map(tone_, sky * ExposureRule::kSky);
+    case Background::kGrey:
+      return {kGreyBackground, kGreyBackground, kGreyBackground};
+    case Background::kWhite:
+      return {1, 1, 1};
+    default:
+      return {};
+  }
+}
+
 RenderedImage RenderPlan::finish(RenderedImage image) const {
   constexpr std::size_t kPixelsPerTask = 1 << 14;
+  const auto is_mixed = [&](std::size_t i) {
+    return image.coverage[i] > 0 && image.coverage[i] < 1;
+  };
+  parallel_for(image.radiance.size(), kPixelsPerTask, [&](std::size_t i) {
+    if (is_mixed(i)) image.radiance[i] = image.radiance[i] * (1 / image.coverage[i]);
+  });
   image.exposure = exposure_ > 0 ? exposure_ : automatic_exposure(image.radiance, image.depth);
+  image.has_alpha = background_ == Background::kTransparent;
   image.rgb.resize(image.radiance.size());
-  parallel_for(image.rgb.size(), kPixelsPerTask,
-               [&](std::size_t i) { image.rgb[i] = tone_map(image.radiance[i] * image.exposure); });
+  parallel_for(image.rgb.size(), kPixelsPerTask, [&](std::size_t i) {
+    const float coverage = image.coverage[i];
+    if (coverage > 0) image.rgb[i] = tone_map(tone_, image.radiance[i] * image.exposure);
+    if (coverage >= 1) return;
+    const auto width = static_cast<std::size_t>(image.width);
+    const Vec3d ray = setup_.camera.direction(static_cast<double>(i % width) + 0.5,
+                                              static_cast<double>(i / width) + 0.5);
+    const Vec3f sky = sky_radiance(setup_.sky, static_cast<Vec3f>(normalized(ray)));
+    // Surfaces and background are exposed apart, then mixed as light of the display.
+    if (!image.has_alpha) image.rgb[i] = mix(background_at(sky), image.rgb[i], coverage);
+    image.radiance[i] = mix(sky, image.radiance[i], coverage);
+  });
   return image;
 }
 

@@ -22,16 +22,21 @@ class RenderPlan {
   /// Returns the image. Renderers fill it through setup().image, and set `rays`.
   RenderedImage& image() { return image_; }
 
-  /// Exposes and tone maps an image's radiance.
+  /// Exposes and tone maps an image's radiance, and puts the background behind its surfaces.
   RenderedImage finish(RenderedImage image) const;
   /// Exposes and tone maps the plan's image, and moves it out.
   RenderedImage finish() { return finish(std::move(image_)); }
 
  private:
+  /// Returns the colour of the background where the sky has this radiance.
+  Vec3f background_at(Vec3f sky) const;
+
   SampleSets samples_;
   RenderedImage image_;
   RenderSetup setup_;
   float exposure_ = 0;
+  ToneMap tone_;
+  Background background_;
 };
 
 }  // namespace voxdag

@@ -40,7 +40,7 @@ struct RenderSettings {
 /// The buffers of a picture: width * height values each, rows from top to bottom. A null buffer is
 /// not filled.
 struct ImageBuffers {
-  Vec3f* radiance = nullptr;  ///< Mean over the samples, linear, before exposure.
+  Vec3f* radiance = nullptr;  ///< Mean over the samples of surfaces, linear, before exposure.
   float* depth = nullptr;     ///< First sample's depth, world units; +infinity if it hit nothing.
   Vec3f* normal = nullptr;    ///< First sample's normal; zero if it hit nothing.
   float* occlusion =
@@ -49,6 +49,13 @@ struct ImageBuffers {
   float* steps = nullptr;   ///< Steps of the first sample's primary ray and its part of the beams.
   /// Size of the first sample's cell, see pack_cell_pixels(); 0 if the sample hit nothing.
   std::uint8_t* cell_pixels = nullptr;
+  float* coverage = nullptr;  ///< Part of the samples that hit a surface.
+};
+
+/// A ground under the scene, see ground.hpp.
+struct Ground {
+  Vec3d middle{};
+  double radius = 0;  ///< World units: shadows fade out up to here. 0: no ground.
 };
 
 struct RenderSetup {
@@ -63,6 +70,7 @@ struct RenderSetup {
   SampleTables tables;
   LookView look;       ///< See RenderOptions.
   RaySection section;  ///< All rays are limited to it.
+  Ground ground;
   ImageBuffers image;
   /// The t at which the primary rays of 4×4 pixels may start: see primary_beams.hpp. Null without
   /// beams.

@@ -7,6 +7,7 @@
 #include "voxdag/render/ambient_occlusion.hpp"
 #include "voxdag/render/cell_pixels.hpp"
 #include "voxdag/render/direct_light.hpp"
+#include "voxdag/render/ground.hpp"
 #include "voxdag/render/voxel_view_samples.hpp"
 
 namespace voxdag {
@@ -40,9 +41,16 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
     const ViewSample& sample = scratch.samples[pixel];
     const auto direction = static_cast<Vec3f>(normalized(pixel_direction(setup, tile, pixel)));
     const bool is_hit = scratch.points[pixel].is_hit();
-    float open = 1, lit = 1;
+    float open = 1, lit = 1, covered = is_hit ? 1.0f : 0.0f;
     Vec3f radiance;
-    if (is_hit) {
+    if (sample.ground > 0) {
+      const float sky = settings.occlusion_samples > 0
+                            ? static_cast<float>(scratch.open[pixel]) /
+                                  static_cast<float>(settings.occlusion_samples)
+                            : 1.0f;
+      covered =
+          ground_shadow(setup, sample, sky, scratch.lit_sum[pixel], scratch.unhindered_sum[pixel]);
+    } else if (is_hit) {
       constexpr float kInversePi = 0.318309886f;
       if (settings.occlusion_samples > 0)
         open = static_cast<float>(scratch.open[pixel]) /
@@ -53,22 +61,23 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
           (sky_light(setup, sample, -direction, open) + scratch.irradiance[pixel] * kInversePi) *
           sample.albedo;
       if (settings.specular.is_on()) radiance = radiance + scratch.highlights[pixel];
-    } else {
-      radiance = sky_radiance(setup.sky, direction);
     }
     const bool is_first = tile.sample_index == 0;
     const auto add = [&](auto* values, auto value) {
       if (values != nullptr) values[at] = is_first ? value * share : values[at] + value * share;
     };
     add(image.radiance, radiance);
+    add(image.coverage, covered);
     add(image.occlusion, open);
     add(image.shadow, lit);
-    if (is_first && image.depth != nullptr) image.depth[at] = sample.depth;
-    if (is_first && image.normal != nullptr) image.normal[at] = sample.normal;
+    const bool is_surface = is_hit && !(sample.ground > 0);
+    if (is_first && image.depth != nullptr) image.depth[at] = is_surface ? sample.depth : HUGE_VALF;
+    if (is_first && image.normal != nullptr)
+      image.normal[at] = is_surface ? sample.normal : Vec3f{};
     if (is_first && image.cell_pixels != nullptr) {
       const double side = setup.camera.pixel_size() * static_cast<double>(sample.depth);
       image.cell_pixels[at] = pack_cell_pixels(
-          is_hit ? static_cast<float>(static_cast<double>(sample.cell_size) / side) : 0.0f);
+          is_surface ? static_cast<float>(static_cast<double>(sample.cell_size) / side) : 0.0f);
     }
   }
 }
@@ -82,9 +91,13 @@ VOXDAG_HD inline int render_sample(const Nodes& nodes, const Caster& caster,
                                    const FindSamples& find_samples) {
   int rays = find_samples(tile, scratch);
   for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
-    const ViewSample& sample = scratch.samples[pixel];
+    ViewSample& sample = scratch.samples[pixel];
     scratch.points[pixel] = {};
-    if (sample.is_hit())
+    if (!sample.is_hit() && setup.ground.radius > 0)
+      sample = ground_view_sample(setup, pixel_direction(setup, tile, pixel));
+    if (sample.ground > 0)
+      scratch.points[pixel] = ground_point(setup, sample);
+    else if (sample.is_hit())
       scratch.points[pixel] =
           make_surface_point(nodes, setup, sample, pixel_direction(setup, tile, pixel));
     scratch.irradiance[pixel] = {};

@@ -21,6 +21,7 @@ struct ViewSample {
   /// The height above the point, along `face`, at which rays start, in world units. 0 means just
   /// above the cubes of cell_size that may represent the surface.
   float lift = 0;
+  float ground = 0;  ///< Of the ground, see ground.hpp: opacity of a full shadow; 0: a surface.
 
   VOXDAG_HD bool is_hit() const { return depth < HUGE_VALF; }
 };

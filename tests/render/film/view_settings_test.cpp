@@ -44,6 +44,7 @@ TEST_F(Settings, EveryKeyIsRead) {
     "camera": {"eye": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1], "fov": 55.5},
     "sun": {"direction": [1, 1, 0], "angle": 2, "on": false},
     "sky": 0.5, "exposure": 3, "shadows": false,
+    "tone": "agx", "background": "white", "ground": false,
     "occlusion": {"samples": 16, "distance": 2.5, "cone": 0.07},
     "lod": 2, "cubes": 12, "level": null, "colors": false, "normals": false, "show": "light",
     "section": {"box": {"low": [-1, -2, -3], "high": [1, 2, 3]},
@@ -59,6 +60,9 @@ TEST_F(Settings, EveryKeyIsRead) {
   EXPECT_FALSE(options.with_sun);
   EXPECT_EQ(options.sky, 0.5f);
   EXPECT_EQ(options.exposure, 3);
+  EXPECT_EQ(options.tone, ToneMap::kAgx);
+  EXPECT_EQ(options.background, Background::kWhite);
+  EXPECT_FALSE(options.ground);
   EXPECT_FALSE(options.shadows);
   EXPECT_EQ(options.occlusion_samples, 16);
   EXPECT_EQ(options.occlusion_distance, 2.5);

@@ -16,6 +16,7 @@ const PARTS = ['source', 'container', 'levels', 'attributes', 'wire', 'worker'];
  *   levels: number, resolution: number, origin: [number, number, number], voxelSize: number, voxels: number,
  *   dagNodesPerLevel: number[], fileBytes: number, isEmpty: boolean,
  *   words: number, leafBlocks: number, levelBegin: number[], hasColors: boolean, hasNormals: boolean,
+ *   up: 'x' | 'y' | 'z' | null, home: (import('../settings.js').Camera & {sun?: [number, number, number]}) | null, cubes: boolean,
  *   source: {name: string, vertices: number, triangles: number}}} FileInfo
  */
 /** @typedef {{precision: number, begins: Uint32Array, words: Uint32Array}} ValuePages */

@@ -12,7 +12,8 @@ export function automaticExposure(pixels, samples) {
   let sum = 0;
   for (let i = 0; i < pixels.length; i += 4) {
     if (pixels[i + 3] < 0.5 * samples) continue;
-    const luminance = (red * pixels[i] + green * pixels[i + 1] + blue * pixels[i + 2]) / samples;
+    const luminance = (red * pixels[i] + green * pixels[i + 1] + blue * pixels[i + 2]) / pixels[i + 3];
+    if (luminance === 0) continue;  // The ground's shadow.
     luminances.push(luminance);
     sum += Math.log(Math.max(luminance, EXPOSURE.min));
   }
@@ -20,5 +21,5 @@ export function automaticExposure(pixels, samples) {
   luminances.sort((a, b) => a - b);
   const mean = Math.exp(sum / luminances.length);
   const white = Math.max(luminances[Math.min(luminances.length - 1, Math.floor(EXPOSURE.bright * luminances.length))], EXPOSURE.min);
-  return Math.min(EXPOSURE.middle / mean, EXPOSURE.white / white);
+  return Math.min(EXPOSURE.middle / mean, EXPOSURE.white / white, EXPOSURE.most);
 }

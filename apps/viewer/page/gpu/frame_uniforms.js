@@ -4,13 +4,13 @@
  */
 import { LIGHT } from '../constants.js';
 import { lensOf } from '../lens.js';
-import { dot, normalized, scale } from '../math.js';
-import { sunDirection } from '../sun.js';
+import { dot, length, normalized, scale, sub } from '../math.js';
+import { interiorSun, sunDirection } from '../sun.js';
 
 /** @typedef {import('../settings.js').Camera} Camera */
 /** @typedef {import('../settings.js').Settings & {camera: Camera}} Settings */
 /** @typedef {import('../math.js').Vec3} Vec3 */
-/** @typedef {{origin: Vec3, side: number}} Place where the grid is, in world units */
+/** @typedef {{origin: Vec3, side: number, bounds: import('../settings.js').Box, home: (Camera & {sun?: Vec3}) | null}} Place where the grid is, in world units */
 
 /** Returns the uniforms of camera.glsl. @param {Place} place @param {Camera} camera @param {number} width @param {number} height  Pixels. */
 export function cameraUniforms(place, camera, width, height) {
@@ -29,7 +29,8 @@ export function cameraUniforms(place, camera, width, height) {
 /** Returns the uniforms of light.glsl that settings and camera determine. @param {Place} place @param {Settings} settings */
 export function lightUniforms(place, settings) {
   const { camera, occlusion } = settings;
-  const sun = sunDirection(settings.sun.direction, camera, LIGHT.defaultSun);
+  const inside = interiorSun(place, camera);
+  const sun = sunDirection(settings.sun.direction ?? inside, camera, LIGHT.defaultSun);
   const sign = sun[2] < 0 ? -1 : 1;
   const a = -1 / (sign + sun[2]), b = sun[0] * sun[1] * a;
   const radius = Math.tan((settings.sun.angle * Math.PI) / 360);
@@ -42,7 +43,7 @@ export function lightUniforms(place, settings) {
     u_ground: LIGHT.ground.map((x) => x * settings.sky),
     u_sky_up: normalized(camera.up, [0, 1, 0]), u_fill: lensOf(camera, 1).right,
     u_albedo: LIGHT.albedo,
-    u_occlusion_distance: occlusion.distance > 0 ? occlusion.distance / place.side : LIGHT.occlusionDistance,
+    u_occlusion_distance: occlusion.distance > 0 ? occlusion.distance / place.side : inside ? LIGHT.interiorOcclusion : LIGHT.occlusionDistance,
     u_occlusion_cone: Math.sqrt(occlusion.cone),
   };
 }
@@ -57,4 +58,13 @@ export function sectionUniforms(place, section) {
     u_section_high: section.box === null ? [1e9, 1e9, 1e9] : inGrid(section.box.high),
     u_section_plane: [...normal, plane === null ? 0 : dot(normal, /** @type {Vec3} */ (inGrid(plane.point)))],
   };
+}
+
+/** Returns the uniforms of the ground: none in an interior or a section, or if no axis points up. @param {Place} place @param {Settings} settings */
+export function groundUniforms(place, settings) {
+  const { camera, section, ground } = settings, { low, high } = place.bounds;
+  const up = normalized(camera.up, [0, 1, 0]), axis = up.indexOf(1);
+  const isOn = ground && axis >= 0 && section.box === null && section.plane === null && interiorSun(place, camera) === null;
+  const middle = low.map((x, a) => ((a === axis ? x : (x + high[a]) / 2) - place.origin[a]) / place.side);
+  return { u_ground_middle: middle, u_ground_up: up, u_ground_radius: isOn ? length(sub(high, low)) / place.side : 0 };
 }

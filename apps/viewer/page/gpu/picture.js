@@ -17,6 +17,8 @@ export class Picture {
     this.current = 0;
     this.samples = 0;  // in the current sum
     this.rows = 0;     // of the next sample that are done
+    /** @type {import('./renderer.js').Shot | null} */
+    this.shot = null;  // the contents of the sums
     this.isDisplay = false;  // the sums hold display colours
   }
 

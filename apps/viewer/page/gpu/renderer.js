@@ -6,10 +6,10 @@ import { DAG, GLSL, LIGHT, NORMAL, SAMPLES } from '../constants.js';
 import { INSTANCE_STEPS } from '../file/scene_loader.js';
 import { loadText } from '../file/text_assets.js';
 import { distance } from '../math.js';
-import { SHOWS } from '../settings.js';
+import { BACKGROUNDS, SHOWS, TONES } from '../settings.js';
 import { shownRange } from './color_scale.js';
 import { automaticExposure } from './exposure.js';
-import { cameraUniforms, lightUniforms, sectionUniforms } from './frame_uniforms.js';
+import { cameraUniforms, groundUniforms, lightUniforms, sectionUniforms } from './frame_uniforms.js';
 import { Program, drawAll, makeTarget, makeTexture } from './gl_tools.js';
 import { texelBits } from './long_texture.js';
 import { discSamples, hemisphereSamples, rotations, samplePlace } from './sample_tables.js';
@@ -73,6 +73,8 @@ export class Renderer {
       }[name] ?? [];
       const head = `#version 300 es\n${GLSL}\n#define TEXEL_BITS ${texelBits(this.gl)}\n#define MOST_STEPS ${MOST_STEPS}\n#define INSTANCE_STEPS ${INSTANCE_STEPS}\n` +
           `#define CUT_ALBEDO vec3(${LIGHT.cutAlbedo})\n${SHOWS.map((show, i) => `#define SHOW_${show.toUpperCase()} ${i}\n`).join('')}` +
+          `${TONES.map((tone, i) => `#define TONE_KIND_${tone.toUpperCase()} ${i}\n`).join('')}` +
+          `${BACKGROUNDS.map((name, i) => `#define BACKGROUND_${name.toUpperCase()} ${i}\n`).join('')}` +
           (look ? '#define HAS_LOOK\n' : '');
       const fragment = head + parts.map(text).join('\n');
       program = new Program(this.gl, `#version 300 es\n${text('quad.vert')}`, fragment, key);
@@ -133,6 +135,7 @@ export class Renderer {
     sample.use();
     this.setCast(sample, shot, picture);
     sample.floats({ u_cube_pixels: settings.cubes });
+    sample.floats(groundUniforms(shot.place, settings));
     sample.ints({ u_coarser_fits: shot.quick ? 0 : NORMAL.coarser });
     const sharing = scene.nodeInstances === null ? {} : { u_node_instances: scene.nodeInstances.texture, u_leaf_instances: /** @type {any} */ (scene.leafInstances).texture };
     sample.textures({ u_node_instances: scene.nodes.texture, u_leaf_instances: scene.nodes.texture, ...scene.walk(), ...sharing,
@@ -160,6 +163,7 @@ export class Renderer {
     gl.disable(gl.SCISSOR_TEST);
 
     picture.rows = end;
+    picture.shot = shot;
     picture.isDisplay = settings.show !== 'light';
     if (end < picture.height) return;
     picture.current = 1 - picture.current;
@@ -208,6 +212,12 @@ export class Renderer {
     display.use();
     display.floats({ u_samples: picture.samples, u_canvas: [width, height], u_picture: [picture.width, picture.height],
                     u_exposure: picture.isDisplay ? 0 : exposure });
+    if (picture.shot !== null) {
+      const { place, settings } = picture.shot;
+      display.floats(cameraUniforms(place, settings.camera, picture.width, picture.height));
+      display.floats(lightUniforms(place, settings));
+      display.ints({ u_tone: TONES.indexOf(settings.tone), u_background: BACKGROUNDS.indexOf(settings.background) });
+    }
     display.textures({ u_sum: picture.sums[picture.current] });
     gl.bindVertexArray(this.vertices);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);

@@ -169,8 +169,17 @@ export const turnedTo = (pose, [yaw, pitch]) => ({ ...pose, yaw: yaw * RADIANS, 
 /** Yaw, pitch and field of view of the first view, in degrees: from outside, above a corner. */
 const HOME = /** @type {[number, number]} */ ([51.3, -23.6]), HOME_FOV = 35;
 
-/** Returns the view that a scene suggests. @param {Box} box @param {number} aspect  Width / height. */
-export function homeView(box, aspect) {
-  const pose = turnedTo(poseOf({ eye: [0, 0, 0], target: [0, 0, -1], up: [0, 1, 0], fov: HOME_FOV }), HOME);
+/**
+ * Returns the view that a scene suggests. The home view of its file, if it has one, counts as it is
+ * if it is inside the box; else it gives the direction.
+ * @param {Box} box @param {number} aspect  Width / height. @param {Vec3} up  Unit vector. @param {Camera | null} [home]
+ */
+export function homeView(box, aspect, up, home = null) {
+  if (home !== null && home.eye.every((x, a) => x > box.low[a] && x < box.high[a])) return home;
+  const north = compassOf(up).north;
+  const pose = home === null ? turnedTo(poseOf({ eye: [0, 0, 0], target: north, up, fov: HOME_FOV }), HOME) : poseOf(home);
   return cameraOf(framed(pose, box, Math.max(aspect, 1e-3)));
 }
+
+/** Returns the unit vector of an axis. @param {'x' | 'y' | 'z'} name @returns {Vec3} */
+export const axisNamed = (name) => [name === 'x' ? 1 : 0, name === 'y' ? 1 : 0, name === 'z' ? 1 : 0];

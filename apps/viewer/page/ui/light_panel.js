@@ -3,8 +3,8 @@ import { RADIANS } from '../math.js';
 import { LIGHT } from '../constants.js';
 import { anglesOf, compassOf } from '../hands/pose.js';
 import { lensOf } from '../lens.js';
-import { sunDirection } from '../sun.js';
-import { group, logarithmic, refreshAll, slider, toggle } from './controls.js';
+import { interiorSun, sunDirection } from '../sun.js';
+import { choice, group, logarithmic, refreshAll, slider, toggle } from './controls.js';
 import { h } from './dom.js';
 import { degrees } from './numbers.js';
 import { skyAngles, skyDirection } from './sky_angles.js';
@@ -20,7 +20,8 @@ import { sunDome } from './sun_dome.js';
 export function lightPanel(ui) {
   const { viewer } = ui;
   const set = (/** @type {PartialSettings} */ settings) => viewer.set(settings, 'ui');
-  const angles = () => skyAngles(sunDirection(viewer.get().sun.direction, viewer.camera(), LIGHT.defaultSun), viewer.camera().up);
+  const inside = () => (viewer.info ? interiorSun(viewer.info, viewer.camera()) : null);
+  const angles = () => skyAngles(sunDirection(viewer.get().sun.direction ?? inside(), viewer.camera(), LIGHT.defaultSun), viewer.camera().up);
   const aim = (/** @type {number} */ azimuth, /** @type {number} */ elevation) =>
     set({ sun: { direction: skyDirection(azimuth, elevation, viewer.camera().up) } });
   /** The azimuth in which the viewer looks: up in the picture, if that is straight down. */
@@ -35,7 +36,7 @@ export function lightPanel(ui) {
   const dome = sunDome({ angles, heading, aim });
   const on = toggle({ label: 'Sun', get: (s) => s.sun.on, set: (value) => set({ sun: { on: value } }) });
   const follow = toggle({
-    label: 'Over my left shoulder', hint: 'The sun turns with the camera',
+    label: 'Over my left shoulder', hint: 'The sun turns with the camera; inside a building, it shines through an opening',
     get: (s) => s.sun.direction === null,
     set: (value) => (value ? set({ sun: { direction: null } }) : aim(angles().azimuth, angles().elevation)),
   });
@@ -63,9 +64,9 @@ export function lightPanel(ui) {
     get: (s) => s.occlusion.samples, set: (value) => set({ occlusion: { samples: value } }),
   });
   const reach = slider({
-    label: 'Its distance', hint: 'How far surfaces darken each other, in parts of the grid', min: 0.005, max: 0.5,
+    label: 'Its distance', hint: 'How far surfaces darken each other, in parts of the grid', min: 0.005, max: 1,
     text: (x) => `${(x * 100).toPrecision(2)}%`,
-    get: (s) => (s.occlusion.distance || LIGHT.occlusionDistance * side()) / side(),
+    get: (s) => s.occlusion.distance / side() || (inside() ? LIGHT.interiorOcclusion : LIGHT.occlusionDistance),
     set: (value) => set({ occlusion: { distance: +(value * side()).toPrecision(3) } }),
   });
   const exposure = slider({
@@ -73,12 +74,24 @@ export function lightPanel(ui) {
     text: (x) => (x ? `× ${x.toPrecision(2)}` : 'automatic'),
     get: (s) => s.exposure, set: (value) => set({ exposure: value }),
   });
-  const refresh = refreshAll([on, follow, azimuth, elevation, angle, shadows, sky, samples, reach, exposure]);
+  const tone = choice({
+    label: 'Tone curve', options: [['neutral', 'Neutral'], ['agx', 'AgX'], ['filmic', 'Filmic']],
+    get: (s) => s.tone, set: (value) => set({ tone: value }),
+  });
+  const background = choice({
+    label: 'Background', options: [['sky', 'Sky'], ['grey', 'Grey'], ['white', 'White'], ['black', 'Black']],
+    get: (s) => s.background, set: (value) => set({ background: value }),
+  });
+  const ground = toggle({
+    label: 'Ground', hint: 'Shows the shadow of the scene on a ground under it',
+    get: (s) => s.ground, set: (value) => set({ ground: value }),
+  });
+  const refresh = refreshAll([on, follow, azimuth, elevation, angle, shadows, sky, samples, reach, exposure, tone, background, ground]);
   const sun = h('div', {}, h('div', { class: 'center' }, dome.element), azimuth.element, elevation.element,
     follow.element, angle.element, shadows.element);
   return {
     element: h('div', {}, group('', on.element, sun), group('Sky', sky.element, samples.element, reach.element),
-      group('', exposure.element)),
+      group('', exposure.element, tone.element, background.element, ground.element)),
     refresh(/** @type {Settings} */ s) {
       refresh(s);
       dome.refresh();

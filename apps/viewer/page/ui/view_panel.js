@@ -2,6 +2,7 @@
 import { addScaled, cross, length, sub } from '../math.js';
 import { compassOf } from '../hands/pose.js';
 import { button, choice, group, refreshAll, segments, slider, toggle } from './controls.js';
+import { shownCubes } from '../settings.js';
 import { h } from './dom.js';
 
 /**
@@ -66,7 +67,7 @@ export function viewPanel(ui) {
     text: (x) => (x ? `${x} px` : 'off'), hint: 'Rays end at cells smaller than this',
   });
   const cubes = slider({
-    label: 'Cubes from', min: 0, max: 100, step: 1, get: (s) => s.cubes, set: (value) => viewer.set({ cubes: value }, 'ui'),
+    label: 'Cubes from', min: 0, max: 100, step: 1, get: (s) => shownCubes(s, viewer.info), set: (value) => viewer.set({ cubes: value }, 'ui'),
     text: (x) => (x ? `${x} px` : 'always'), hint: 'Voxels of at least this size look like cubes, smaller ones smooth',
   });
   const change = (/** @type {Partial<import('../settings.js').Camera>} */ part) => {

@@ -35,6 +35,7 @@ class DagModel {
   DagAttributesView attributes() const;
   const VdagMetadata& metadata() const { return metadata_; }
   const Grid& grid() const { return metadata_.grid; }
+  void set_presentation(const Presentation& presentation) { metadata_.presentation = presentation; }
   std::uint64_t file_bytes() const { return file_bytes_; }
   /// Replaces the colours by one for each material. Throws Error if the file has no material ids.
   void show_materials(const std::filesystem::path& path, Work work);

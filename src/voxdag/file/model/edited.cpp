@@ -9,6 +9,7 @@ DagModel edited(const VdagMetadata& source, Svdag dag, const Grid& grid, const s
   VdagMetadata metadata = source;
   metadata.grid = grid;
   metadata.attributes = {};
+  metadata.presentation.home.reset();
   std::string& edits = metadata.build["edits"];
   edits += (edits.empty() ? "" : "; ") + edit;
   return {std::move(dag), {}, std::move(metadata), work};

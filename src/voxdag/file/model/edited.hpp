@@ -7,7 +7,7 @@
 
 namespace voxdag {
 
-/// Returns a model of `dag` in `grid`, without attributes. The metadata are `source`;
+/// Returns a model of `dag` in `grid`, without attributes and home view. The metadata are `source`;
 /// their entry "edits" gets `edit`, which says how the voxels were made. Throws OverMemory.
 DagModel edited(const VdagMetadata& source, Svdag dag, const Grid& grid, const std::string& edit,
                 Work work = {});

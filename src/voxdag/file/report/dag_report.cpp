@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "voxdag/core/printable.hpp"
+#include "voxdag/file/metadata_json.hpp"
 #include "voxdag/file/report/human.hpp"
 #include "voxdag/stored/compact/compact_parts.hpp"
 
@@ -166,23 +167,34 @@ Json dag_json(const DagReport& report) {
   }
   if (metadata.attributes.resolution != 0)
     json["attributes"] = attributes_json(metadata.attributes, report.attributes);
-  add_placement_json(json, metadata.grid, metadata.source, metadata.program, metadata.build);
+  add_placement_json(json, metadata);
   return json;
 }
 
-void add_placement_json(Json& json, const Grid& grid, const VdagSource& source,
-                        const std::string& program,
-                        const std::map<std::string, std::string>& build) {
+void add_placement_json(Json& json, const SceneMetadata& metadata) {
+  const Grid& grid = metadata.grid;
+  const VdagSource& source = metadata.source;
   json["transform"] = {{"origin", vec_json(grid.origin)},
                        {"voxel_size", grid.voxel_size},
                        {"quantization_scale", grid.quantization_scale}};
   json["source"] = {
       {"name", source.name}, {"vertices", source.vertices}, {"triangles", source.triangles}};
-  json["program"] = program;
-  json["build"] = build;
+  json["program"] = metadata.program;
+  json["build"] = metadata.build;
+  add_presentation(json, metadata.presentation);
 }
 
-std::string placement_table(const Grid& grid, const VdagSource& source) {
+std::string placement_table(const SceneMetadata& metadata) {
+  const Grid& grid = metadata.grid;
+  const VdagSource& source = metadata.source;
+  const Presentation& presentation = metadata.presentation;
+  std::string view;
+  if (presentation.up) view = fmt::format("  {:<14}{}", "up", *presentation.up);
+  if (!presentation.unit.empty()) view += ", in " + printable(presentation.unit);
+  if (presentation.up && presentation.home)
+    view += fmt::format(", home at ({:.6g}, {:.6g}, {:.6g})", presentation.home->eye.x,
+                        presentation.home->eye.y, presentation.home->eye.z);
+  if (!view.empty()) view += "\n";
   const Vec3d lo = grid.origin, hi = grid.bounds().hi;
   // An imported file has no triangles; its points or voxels count as vertices.
   const bool is_mesh = source.triangles > 0 || source.vertices == 0;
@@ -190,15 +202,15 @@ std::string placement_table(const Grid& grid, const VdagSource& source) {
                                     : with_commas(source.vertices) + " points or voxels";
   return fmt::format(
       "  {:<14}{}, {}\n"
-      "  {:<14}{}³ voxels of {:.6g}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n",
+      "  {:<14}{}³ voxels of {:.6g}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n{}",
       is_mesh ? "mesh" : "source", printable(source.name), items, "grid",
-      with_commas(grid.resolution()), grid.voxel_size, lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
+      with_commas(grid.resolution()), grid.voxel_size, lo.x, lo.y, lo.z, hi.x, hi.y, hi.z, view);
 }
 
 std::string dag_table(const DagReport& report) {
   const SvdagCounts& counts = report.metadata.counts;
   const std::uint64_t svo_bytes = counts.svo_nodes();
-  std::string text = placement_table(report.metadata.grid, report.metadata.source);
+  std::string text = placement_table(report.metadata);
   text += fmt::format("  {:<14}{}\n\n", "voxels", with_commas(counts.voxels));
   text += row("", "SVO", "DAG", "ratio");
   text += row("nodes", with_commas(counts.svo_nodes()), with_commas(counts.dag_nodes()),

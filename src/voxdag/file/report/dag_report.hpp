@@ -57,12 +57,10 @@ nlohmann::ordered_json dag_json(const DagReport& report);
 std::string dag_table(const DagReport& report);
 
 /// Adds the keys of all kinds of voxels: "transform", "source", "program" and "build".
-void add_placement_json(nlohmann::ordered_json& json, const Grid& grid, const VdagSource& source,
-                        const std::string& program,
-                        const std::map<std::string, std::string>& build);
+void add_placement_json(nlohmann::ordered_json& json, const SceneMetadata& metadata);
 
 /// Returns the mesh and the grid, a line each. The name of the mesh is made printable.
-std::string placement_table(const Grid& grid, const VdagSource& source);
+std::string placement_table(const SceneMetadata& metadata);
 
 /// Returns the nodes of SVO and DAG side by side, a line per level.
 std::string level_table(const SvdagCounts& counts);

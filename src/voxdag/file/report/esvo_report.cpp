@@ -54,14 +54,14 @@ Json esvo_json(const EsvoReport& report) {
                    {"padding", bytes.padding},
                    {"esvo", bytes.total()},
                    {"file", report.file_bytes}};
-  add_placement_json(json, metadata.grid, metadata.source, metadata.program, metadata.build);
+  add_placement_json(json, metadata);
   return json;
 }
 
 std::string esvo_table(const EsvoReport& report) {
   const EsvoCounts& counts = report.metadata.counts;
   const EsvoBytes& bytes = report.bytes;
-  std::string text = placement_table(report.metadata.grid, report.metadata.source);
+  std::string text = placement_table(report.metadata);
   text += fmt::format("  {:<14}{}, of them {} leaves\n", "voxels", with_commas(counts.voxels()),
                       with_commas(counts.leaves()));
   text +=

@@ -36,7 +36,7 @@ double estimate_seconds(const Film& film, const PictureRenderer& render) {
   RenderOptions small = thumbnail_options(film.options);
   small.shadow_samples = film.options.shadow_samples;
   small.occlusion_samples = film.options.occlusion_samples;
-  small.view = as_request(film.path.at(film.path.start()));
+  small.view = as_request(film.path.at(film.path.start()), small.view);
   const auto start = Clock::now();
   render(small, {});
   const double seconds = milliseconds_since(start) / 1000;
@@ -56,7 +56,7 @@ std::vector<FrameTiming> render_film(const Film& film, const PictureRenderer& re
     FrameTiming timing;
     timing.frame = static_cast<int>(i);
     timing.time = times[i];
-    options.view = as_request(film.path.at(times[i]));
+    options.view = as_request(film.path.at(times[i]), options.view);
     options.exposure = exposures[i];
     auto stage = Clock::now();
     const RenderedImage image = render(options, {});

@@ -21,7 +21,7 @@ std::vector<float> film_exposures(const CameraPath& path, std::span<const double
   if (options.exposure > 0) return std::vector<float>(times.size(), options.exposure);
   RenderOptions small = thumbnail_options(options);
   const auto logs = results_of<double>(queue, times.size(), [&](std::size_t i) {
-    small.view = as_request(path.at(times[i]));
+    small.view = as_request(path.at(times[i]), small.view);
     const double log = std::log(static_cast<double>(render(small, {}).exposure));
     work.poll();
     work.report_done("exposure", i + 1, times.size());

@@ -77,6 +77,7 @@ CameraPath make_camera_path(const PathFile& file, const VoxelSet& scene, const G
     for (const PathKey& key : file.keys) {
       const ViewRequest before = keys.empty() ? first : as_request(keys.back().view);
       ViewRequest request{key.eye, key.target, key.up, key.fov_degrees};
+      request.scene_up = first.scene_up;
       if (!key.up) request.up = before.up;
       if (!key.fov_degrees) request.vertical_fov_degrees = before.vertical_fov_degrees;
       keys.push_back({key.time, frame_scene(scene, grid, aspect, request)});

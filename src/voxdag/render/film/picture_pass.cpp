@@ -114,6 +114,16 @@ ImageRgb8 grey_steps(const RenderedImage& image) {
   return colored(image, image.steps, [](float steps) { return grey(steps / 64); });
 }
 
+/// Returns the picture with alpha; the colours are multiplied by it, as EXR files have them.
+ImageF with_alpha(const RenderedImage& image) {
+  ImageF out(image.width, image.height, 4);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    for (int c = 0; c < 3; ++c) out.pixels[4 * i + c] = image.rgb[i][c] * image.coverage[i];
+    out.pixels[4 * i + 3] = image.coverage[i];
+  }
+  return out;
+}
+
 bool has_extension(const std::string& path, const char* extension) {
   return std::filesystem::path(path).extension() == extension;
 }
@@ -158,7 +168,14 @@ bool is_picture_path(const std::string& path) {
 }
 
 void write_pass(const PictureKind& kind, const std::string& path, const RenderedImage& image) {
-  if (has_extension(path, ".exr")) return write_exr(path, kind.values(image), kind.channels);
+  const bool is_exr = has_extension(path, ".exr");
+  if (kind.name == "picture" && image.has_alpha) {
+    if (is_exr) return write_exr(path, with_alpha(image), {"R", "G", "B", "A"});
+    std::vector<std::uint8_t> alpha(image.coverage.size());
+    for (std::size_t i = 0; i < alpha.size(); ++i) alpha[i] = nearest_code(image.coverage[i], 0, 0);
+    return write_png(path, kind.shown(image), alpha);
+  }
+  if (is_exr) return write_exr(path, kind.values(image), kind.channels);
   write_png(path, kind.shown(image));
 }
 

@@ -24,6 +24,7 @@ class Reader {
   ViewSettings read() {
     const Json json = read_json_file(file_, {kMaxBytes, "a view"});
     RenderOptions& options = settings_.options;
+    options.ground = true;
     each_member(
         json, "",
         {{"version", [&](const Json& value) { check_version(value); }},
@@ -33,6 +34,9 @@ class Reader {
           [&](const Json& value) { options.sky = real(value, "sky", 0, RenderLimits::kSky); }},
          {"exposure",
           [&](const Json& value) { options.exposure = real(value, "exposure", 0, 1e30); }},
+         {"tone", [&](const Json& value) { options.tone = tone(value); }},
+         {"background", [&](const Json& value) { options.background = background(value); }},
+         {"ground", [&](const Json& value) { options.ground = flag(value, "ground"); }},
          {"shadows", [&](const Json& value) { options.shadows = flag(value, "shadows"); }},
          {"occlusion", [&](const Json& value) { read_occlusion(value); }},
          {"lod",
@@ -103,6 +107,21 @@ class Reader {
   bool flag(const Json& json, const std::string& key) const {
     if (!json.is_boolean()) refuse(key, "is not true or false");
     return json.get<bool>();
+  }
+
+  ToneMap tone(const Json& json) const {
+    if (json == "neutral") return ToneMap::kNeutral;
+    if (json == "agx") return ToneMap::kAgx;
+    if (json != "filmic") refuse("tone", "is none of neutral, agx and filmic");
+    return ToneMap::kFilmic;
+  }
+
+  Background background(const Json& json) const {
+    if (json == "grey") return Background::kGrey;
+    if (json == "white") return Background::kWhite;
+    if (json == "black") return Background::kBlack;
+    if (json != "sky") refuse("background", "is none of sky, grey, white and black");
+    return Background::kSky;
   }
 
   void check_version(const Json& json) const {

@@ -117,8 +117,17 @@ async function readSceneInfo(source, head, chunks) {
     fileBytes: source.size, isEmpty, words, leafBlocks, levelBegin,
     hasColors: (chunks.has('COLR') || chunks.has('WCOL')) && chunks.has('CIDX'),
     hasNormals: (chunks.has('NRML') || chunks.has('WNRM')) && chunks.has('CIDX'),
+    up: ['x', 'y', 'z'].includes(parsed.up) ? parsed.up : null, home: homeIn(parsed.home), cubes: parsed.cubes === true,
     source: { name: String(parsed.source?.name ?? ''), vertices: Number(parsed.source?.vertices) || 0, triangles: Number(parsed.source?.triangles) || 0 },
   };
+}
+
+/** Returns the home view of the metadata, or null if it is no view. @param {any} home */
+function homeIn(home) {
+  const isPoint = (/** @type {any} */ p) => Array.isArray(p) && p.length === 3 && p.every(Number.isFinite);
+  const isView = home && isPoint(home.eye) && isPoint(home.target) && isPoint(home.up) && home.fov > 0 && home.fov < 180;
+  if (!isView) return null;
+  return { eye: home.eye, target: home.target, up: home.up, fov: home.fov, ...(isPoint(home.sun) ? { sun: home.sun } : {}) };
 }
 
 /** Returns the bytes of a chunk, from `head` if they are in it. @param {MemorySource | ServerSource} source @param {Uint8Array} head @param {Chunk} chunk */

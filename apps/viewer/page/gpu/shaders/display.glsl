@@ -1,22 +1,70 @@
-// Shows the picture: exposure, tone mapping, sRGB and dither, as render/tone_map.hpp and
-// image/dither.hpp do. A picture with fewer pixels than the canvas is enlarged.
+// Shows the picture: exposure, tone mapping, background, sRGB and dither, as render/tone_map.hpp,
+// sky.hpp, render_plan.cpp and image/dither.hpp do. A picture with fewer pixels than the canvas is enlarged.
 
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 
-uniform sampler2D u_sum;
+uniform sampler2D u_sum;      // red, green and blue of surfaces, and how many samples hit one
 uniform float u_samples;      // in the sum
+uniform int u_tone;           // TONE_KIND_*
+uniform int u_background;     // BACKGROUND_*
+uniform vec3 u_forward, u_right, u_up;  // as in camera.glsl
+uniform vec3 u_sun, u_sun_light, u_zenith, u_horizon, u_ground, u_sky_up;  // as in light.glsl
 uniform vec2 u_canvas, u_picture;  // sizes in pixels
 uniform float u_exposure;     // 0: the sum holds display colours
 layout(location = 0) out vec4 out_color;
 
+vec3 skyRadiance(vec3 direction) {
+  float height = dot(direction, u_sky_up);
+  float haze = 1.0 - max(height, 0.0);
+  vec3 radiance = mix(u_zenith, u_horizon, haze * haze * haze * haze);
+  float glow = max(dot(direction, u_sun), 0.0);
+  glow *= glow;
+  radiance += u_sun_light * (LIGHT_GLOW * glow * glow * glow * glow);
+  float t = clamp((height - LIGHT_GROUND_BEGINS) / (LIGHT_GROUND_IS_FULL - LIGHT_GROUND_BEGINS), 0.0, 1.0);
+  return mix(radiance, u_ground * LIGHT_GROUND_SEEN, t * t * (3.0 - 2.0 * t));
+}
+
+vec3 neutral(vec3 rgb) {
+  float least = min(rgb.x, min(rgb.y, rgb.z));
+  rgb -= least < 2.0 * NEUTRAL_FLOOR ? least - least * least / (4.0 * NEUTRAL_FLOOR) : NEUTRAL_FLOOR;
+  float peak = max(rgb.x, max(rgb.y, rgb.z));
+  if (peak < NEUTRAL_START) return rgb;
+  float room = 1.0 - NEUTRAL_START;
+  float to = 1.0 - room * room / (peak + room - NEUTRAL_START);
+  return mix(vec3(to), rgb * (to / peak), 1.0 / (NEUTRAL_DESATURATION * (peak - to) + 1.0));
+}
+
+vec3 agx(vec3 rgb) {
+  vec3 v = vec3(dot(AGX_IN_RED, rgb), dot(AGX_IN_GREEN, rgb), dot(AGX_IN_BLUE, rgb));
+  vec3 x = clamp((log2(max(v, 1e-10)) - AGX_LOWEST) / (AGX_HIGHEST - AGX_LOWEST), 0.0, 1.0);
+  v = (((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x + 0.1191) * x - 0.00232;
+  return pow(clamp(vec3(dot(AGX_OUT_RED, v), dot(AGX_OUT_GREEN, v), dot(AGX_OUT_BLUE, v)), 0.0, 1.0), vec3(2.2));
+}
+
+vec3 toneMap(vec3 x) {
+  if (u_tone == TONE_KIND_AGX) return agx(x);
+  vec3 y = u_tone == TONE_KIND_NEUTRAL ? neutral(x) : (x * (TONE_A * x + TONE_B)) / (x * (TONE_C * x + TONE_D) + TONE_E);
+  return clamp(y, 0.0, 1.0);
+}
+
+vec3 background(ivec2 at) {
+  if (u_background == BACKGROUND_GREY) return vec3(LIGHT_GREY);
+  if (u_background == BACKGROUND_WHITE) return vec3(1.0);
+  if (u_background == BACKGROUND_BLACK) return vec3(0.0);
+  vec2 place = (vec2(at) + 0.5) / u_picture * 2.0 - 1.0;
+  return toneMap(skyRadiance(normalize(u_forward + u_right * place.x + u_up * place.y)) * EXPOSURE_SKY);
+}
+
+// Surfaces and background are exposed apart, then mixed as light of the display.
 vec3 toneMapped(ivec2 at) {
   at = clamp(at, ivec2(0), ivec2(u_picture) - 1);
-  vec3 x = texelFetch(u_sum, at, 0).rgb / u_samples;
-  if (u_exposure <= 0.0) return clamp(x, 0.0, 1.0);
-  x *= u_exposure;
-  return clamp((x * (TONE_A * x + TONE_B)) / (x * (TONE_C * x + TONE_D) + TONE_E), 0.0, 1.0);
+  vec4 sum = texelFetch(u_sum, at, 0);
+  if (u_exposure <= 0.0) return clamp(sum.rgb / u_samples, 0.0, 1.0);
+  float coverage = sum.w / u_samples;
+  vec3 surface = coverage > 0.0 ? toneMap(sum.rgb / sum.w * u_exposure) : vec3(0.0);
+  return coverage < 1.0 ? mix(background(at), surface, coverage) : surface;
 }
 
 void main() {

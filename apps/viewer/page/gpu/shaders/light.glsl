@@ -53,25 +53,22 @@ vec3 srgbToLinear(vec3 c) {
   return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, vec3(lessThanEqual(c, vec3(0.04045))));
 }
 
-vec3 skyRadiance(vec3 direction) {
-  float height = dot(direction, u_sky_up);
-  float haze = 1.0 - max(height, 0.0);
-  vec3 radiance = mix(u_zenith, u_horizon, haze * haze * haze * haze);
-  float glow = max(dot(direction, u_sun), 0.0);
-  glow *= glow;
-  radiance += u_sun_light * (LIGHT_GLOW * glow * glow * glow * glow);
-  float t = clamp((height - LIGHT_GROUND_BEGINS) / (LIGHT_GROUND_IS_FULL - LIGHT_GROUND_BEGINS), 0.0, 1.0);
-  return mix(radiance, u_ground * LIGHT_GROUND_SEEN, t * t * (3.0 - 2.0 * t));
-}
-
 vec3 skyLight(vec3 normal, vec3 view, float open) {
   vec3 light = mix(u_ground, mix(u_zenith, u_horizon, LIGHT_HORIZON_IN_DOME), 0.5 + 0.5 * dot(normal, u_sky_up));
   if (u_sky_occluded) return light * (LIGHT_OPEN * open);
   return light * max(LIGHT_FILL + LIGHT_FILL_FACING * dot(normal, view) + LIGHT_FILL_ASIDE * dot(normal, u_fill), 0.0);
 }
 
+// Returns a ray from a surface, or from the ground, which may lie outside the grid.
+GridRay rayFrom(vec3 start, vec3 direction, float t_max, bool is_ground) {
+  if (!is_ground) return rayFromPoint(start, direction, 0.0, t_max);
+  GridRay ray = rayFromEye(start - 1.0, direction);
+  ray.t_max = min(ray.t_max, (t_max - ray.t_start) / ray.t_scale);
+  return ray;
+}
+
 // Returns the part of the sun's light that arrives, times the cosine at the surface.
-float sunlight(vec3 start, vec3 normal, vec3 face, float cell_side, PixelSamples pixel) {
+float sunlight(vec3 start, vec3 normal, vec3 face, float cell_side, PixelSamples pixel, bool is_ground) {
   float lit = 0.0;
   for (int i = 0; i < u_light_samples; ++i) {
     vec2 p = rotated(pixel, texelFetch(u_disc, ivec2(u_light_first + i, pixel.set), 0).xy);
@@ -79,14 +76,14 @@ float sunlight(vec3 start, vec3 normal, vec3 face, float cell_side, PixelSamples
     float above = dot(normal, direction);
     if (!(above > 0.0 && dot(face, direction) > 0.0)) continue;
     CellHit hit;
-    if (u_shadows && castRay(rayFromPoint(start, direction, 0.0, 3e38), cell_side, 0.0, hit)) continue;
+    if (u_shadows && castRay(rayFrom(start, direction, 3e38, is_ground), cell_side, 0.0, hit)) continue;
     lit += above / length(direction);
   }
   return lit / float(u_light_samples);
 }
 
 // Returns the part of the sky's light that no near surface occludes.
-float openSky(vec3 start, vec3 normal, vec3 face, float cell_side, PixelSamples pixel) {
+float openSky(vec3 start, vec3 normal, vec3 face, float cell_side, PixelSamples pixel, bool is_ground) {
   float s = normal.z < 0.0 ? -1.0 : 1.0;
   float a = -1.0 / (s + normal.z), b = normal.x * normal.y * a;
   vec3 u = vec3(1.0 + s * normal.x * normal.x * a, s * b, -s * normal.x);
@@ -98,7 +95,7 @@ float openSky(vec3 start, vec3 normal, vec3 face, float cell_side, PixelSamples 
     vec3 direction = u * flat_part.x + v * flat_part.y + normal * ray.z;
     float above = dot(direction, face);
     if (above < 0.0) direction -= face * (2.0 * above);
-    GridRay short_ray = rayFromPoint(start, direction, 0.0, ray.w * u_occlusion_distance);
+    GridRay short_ray = rayFrom(start, direction, ray.w * u_occlusion_distance, is_ground);
     CellHit hit;
     if (!castRay(short_ray, cell_side, u_occlusion_cone * short_ray.t_scale, hit)) ++open;
   }
@@ -131,16 +128,18 @@ void main() {
   vec4 normal = texelFetch(u_normal, at, 0);
   vec4 face = texelFetch(u_face, at, 0);
   vec3 direction = normalize(pixelDirection(vec2(pixel)));
-  bool is_hit = start.w > 0.0;
+  bool is_hit = start.w > 0.0, is_ground = face.z < -2.5;
   vec3 radiance = vec3(0.0);
+  float covered = is_hit ? 1.0 : 0.0;
   if (!is_hit) {
-    radiance = u_show == SHOW_LIGHT ? skyRadiance(direction) : u_show == SHOW_STEPS ? heat(face.w / u_most) : vec3(0.0);
+    // display.glsl puts the sky behind the surfaces.
+    if (u_show == SHOW_STEPS) radiance = heat(face.w / u_most);
     if (u_show == SHOW_OCCLUSION) radiance = vec3(1.0);
   } else {
     vec3 flat_normal = unpackUnit(face.xy);
     float open = 1.0;
     if (u_occlusion_samples > 0 && (u_show == SHOW_LIGHT || u_show == SHOW_OCCLUSION))
-      open = openSky(start.xyz, normal.xyz, flat_normal, start.w, pixelSamples(pixel, 0u));
+      open = openSky(start.xyz, normal.xyz, flat_normal, start.w, pixelSamples(pixel, 0u), is_ground);
     if (u_show == SHOW_LIGHT) {
       vec3 albedo = u_albedo;
       if (face.z >= 0.0) {
@@ -151,13 +150,19 @@ void main() {
       }
       vec3 light = skyLight(normal.xyz, -direction, open);
       if (u_sun_light != vec3(0.0))
-        light += u_sun_light * sunlight(start.xyz, normal.xyz, flat_normal, start.w, pixelSamples(pixel, 1u));
+        light += u_sun_light * sunlight(start.xyz, normal.xyz, flat_normal, start.w, pixelSamples(pixel, 1u), is_ground);
       radiance = light * albedo;
+      if (is_ground) {
+        const vec3 luminance = EXPOSURE_LUMINANCE;
+        vec3 all = skyLight(normal.xyz, -direction, 1.0) + u_sun_light * max(dot(normal.xyz, u_sun), 0.0);
+        covered = face.w * max(1.0 - dot(light, luminance) / dot(all, luminance), 0.0);
+        radiance = vec3(0.0);
+      }
     } else {
       radiance = shown(normal, face.w, -direction, open);
     }
   }
-  vec4 sum = vec4(radiance, is_hit ? 1.0 : 0.0);
+  vec4 sum = vec4(radiance, covered);
   if (!u_first) sum += texelFetch(u_sum, at, 0);
   out_sum = sum;
 }

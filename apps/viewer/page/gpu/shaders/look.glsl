@@ -2,9 +2,9 @@
 // Numbers of cells and byte addresses fit into 32 bits (the loader takes care of it).
 
 uniform usampler2D u_slots;    // r: the words of CIDX, 32 bits each
-uniform int u_slot_width[DAG_MOST_LEVELS];
-uniform uint u_slot_begin[DAG_MOST_LEVELS];   // in words of 32 bits
-uniform uint u_level_begin[DAG_MOST_LEVELS];  // in words of NODE
+uniform int u_slot_width[DAG_MAX_LEVELS];
+uniform uint u_slot_begin[DAG_MAX_LEVELS];   // in words of 32 bits
+uniform uint u_level_begin[DAG_MAX_LEVELS];  // in words of NODE
 uniform int u_finest;          // m, the finest level with attributes; -1 without attributes
 
 uint slotWord(uint i) { return texelFetch(u_slots, texel(i), 0).x; }

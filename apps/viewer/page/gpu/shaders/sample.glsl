@@ -2,6 +2,8 @@
 // render/voxel_view_samples.hpp.
 
 uniform float u_cube_pixels;
+uniform vec3 u_ground_middle, u_ground_up;  // relative to the grid's corner, in its sides
+uniform float u_ground_radius;              // 0: no ground
 uniform int u_show;            // SHOW_*
 uniform usampler2D u_node_instances, u_leaf_instances;
 uniform int u_color_bits, u_normal_bits;  // precision of the stored values; -1: none
@@ -27,7 +29,21 @@ void main() {
   out_start = vec4(0.0);
   out_normal = vec4(0.0, 0.0, 0.0, -1.0);
   out_face = vec4(0.0, 0.0, -1.0, steps);
-  if (!is_hit) return;
+  if (!is_hit) {
+    // The ground of render/ground.hpp.
+    float height = dot(u_eye - u_ground_middle, u_ground_up), fall = -dot(direction, u_ground_up);
+    if (u_show != SHOW_LIGHT || u_ground_radius <= 0.0 || height <= 0.0 || fall <= 0.0) return;
+    vec3 on_ground = u_eye + direction * (height / fall);
+    vec3 aside = on_ground - u_ground_middle;
+    float left = 1.0 - dot(aside, aside) / (u_ground_radius * u_ground_radius);
+    if (left <= 0.0) return;
+    float side = 1.0 / float(1 << u_levels);
+    for (int level = u_levels; level > 2 && side * 2.0 <= scale * height / fall; --level) side *= 2.0;
+    out_start = vec4(1.0 + on_ground + u_ground_up * (0.25 * side), side);
+    out_normal = vec4(u_ground_up, -1.0);
+    out_face = vec4(packUnit(u_ground_up), -3.0, left * left);
+    return;
+  }
 
   float depth = ray.t_start + hit.t * ray.t_scale;
   float cell_side = uintBitsToFloat(uint(127 - hit.level) << 23u);

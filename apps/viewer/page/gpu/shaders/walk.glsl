@@ -13,7 +13,7 @@ bool castRay(GridRay ray, float stop_start, float stop_per_t, out CellHit hit) {
   vec3 leave = (o - vec3(1.0)) * inv;
   if (min(min(leave.x, leave.y), leave.z) <= t) return false;
 
-  uint stack[DAG_MOST_LEVELS];
+  uint stack[DAG_MAX_LEVELS];
   uint node = 0u;
   uint mask = childMask(0u, 0);
   uvec3 corner = uvec3(0x3F800000u);

@@ -59,6 +59,7 @@ FormatCustom fbx_custom(std::string_view bytes) {
     return (is_binary ? binary_number(bytes, name) : text_number(bytes, name)).value_or(otherwise);
   };
   FormatCustom custom;
+  custom.has_up = true;
   const double up = number("UpAxis", 1);
   if (up == 0 || up == 2) custom.up = static_cast<int>(up);
   const double centimetres = number("UnitScaleFactor", 1);

@@ -1,0 +1,23 @@
+#pragma once
+/// Chooses the home view of a scene that is about to be saved.
+#include "voxdag/file/scene_metadata.hpp"
+#include "voxdag/render/view.hpp"
+
+namespace voxdag {
+
+/// Returns the presentation with home_view() of the voxels. If its up axis is not known, detects
+/// it. Takes about ten milliseconds.
+inline Presentation with_home(Presentation presentation, const VoxelSet& voxels, const Grid& grid) {
+  presentation.home = home_view(voxels, grid, presentation.up_vector());
+  const Vec3d up = presentation.home->up;
+  presentation.up = up.x != 0 ? 'x' : up.y != 0 ? 'y' : 'z';
+  return presentation;
+}
+
+/// Tells `request` the scene's up vector and home.
+inline void show_as(const Presentation& presentation, ViewRequest& request) {
+  request.scene_up = presentation.up_vector();
+  request.home = presentation.home;
+}
+
+}  // namespace voxdag
