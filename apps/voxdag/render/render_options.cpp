@@ -244,7 +244,8 @@ void add_path_options(const Command& command, PathArguments& path, const ViewOpt
 
 void add_render_options(const Command& command, Session& session, RenderArguments& arguments) {
   RenderOptions& options = arguments.options;
-  command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
+  arguments.input.with_colors = true;
+  add_scene_input(command, arguments.input, session, "The .vdag or .esvo file");
   command
       .text("-o,--output", arguments.output, "OUT",
             "The picture to write: .png, or .exr for linear light")
