@@ -271,7 +271,7 @@ TEST_F(Edit, AMemoryLimitIsKeptOrRefused) {
 }
 
 TEST_F(Edit, DiffFindsTheShiftThatMakesBothEqual) {
-  run({"crop", path("a.vdag"), "--box", "0,0,0,20,20,20"}, "part.vdag");
+  run({"crop", path("a.vdag"), "--window", "0,0,0,20,20,20"}, "part.vdag");
   run({"shift", path("part.vdag"), "--by", "3,0,2"}, "moved.vdag");
   const auto diff = [](const std::string& a, const std::string& b) {
     return run_voxdag({"diff", path(a), path(b)}).out;
