@@ -201,7 +201,6 @@ TEST_F(Build, BadUsageIsRefusedBeforeAnyWork) {
   expect_failure(build({"-r", "64", "--method", "magic"}), 2, "--method");
   expect_failure(build({"-r", "64", "--memory", "much"}), 2, "--memory");
   expect_failure(build({"-r", "64", "--threads", "0"}), 2, "--threads");
-  expect_failure(run_voxdag({"build", mesh_, "-r", "64"}), 2, "--output");
   expect_nothing_left();
 }
 
