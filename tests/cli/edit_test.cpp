@@ -270,5 +270,54 @@ TEST_F(Edit, AMemoryLimitIsKeptOrRefused) {
   EXPECT_EQ(files_like("none"), 0);
 }
 
+TEST_F(Edit, DiffFindsTheShiftThatMakesBothEqual) {
+  run({"crop", path("a.vdag"), "--window", "0,0,0,20,20,20"}, "part.vdag");
+  run({"shift", path("part.vdag"), "--by", "3,0,2"}, "moved.vdag");
+  const auto diff = [](const std::string& a, const std::string& b) {
+    return run_voxdag({"diff", path(a), path(b)}).out;
+  };
+  EXPECT_NE(diff("part.vdag", "moved.vdag").find("voxdag shift --by 3,0,2\n"), std::string::npos);
+  EXPECT_NE(diff("moved.vdag", "part.vdag").find("voxdag shift --by -3,0,-2\n"), std::string::npos);
+  EXPECT_EQ(diff("part.vdag", "part.vdag").find("shift"), std::string::npos);
+  EXPECT_EQ(diff("a.vdag", "b.vdag").find("shift"), std::string::npos);
+  const auto json = nlohmann::json::parse(
+      run_voxdag({"diff", path("part.vdag"), path("moved.vdag"), "--json"}).out);
+  EXPECT_EQ(json.at("equal_when_shifted"), (std::vector<int>{3, 0, 2}));
+}
+
+TEST_F(Edit, GridsThatDoNotAlignAreToldHowTheyWould) {
+  const auto build = [](const std::string& file, const std::vector<std::string>& options) {
+    std::vector<std::string> words = {"build", path("sponge.ply"), "-o", path(file)};
+    words.insert(words.end(), options.begin(), options.end());
+    EXPECT_EQ(run_voxdag(words).status, 0);
+  };
+  build("own.vdag", {"-r", "20"});
+  const ProcessResult apart = run_voxdag({"diff", path("a.vdag"), path("own.vdag")});
+  expect_failure(apart, 1, "voxdag build --grid-of " + path("a.vdag"));
+  build("same.vdag", {"--grid-of", path("a.vdag")});
+  EXPECT_EQ(read_text(path("same.vdag")).size(), read_text(path("a.vdag")).size());
+  EXPECT_NE(run_voxdag({"diff", path("a.vdag"), path("same.vdag")})
+                .out.find("only in " + path("a.vdag") + ": 0 voxels\nonly in " + path("same.vdag") +
+                          ": 0 voxels\n"),
+            std::string::npos);
+  build("0.vdag", {"--voxel-size", "0.02", "--origin", "0,0,0"});
+  // The mesh and its grid move by a part of a voxel.
+  build("1.vdag", {"--voxel-size", "0.02", "--origin", "0.005,0,0", "--translate", "0.005,0,0"});
+  expect_failure(run_voxdag({"diff", path("0.vdag"), path("1.vdag")}), 1,
+                 "equal if the first file moves by 0.005,0,0");
+  expect_failure(run_voxdag({"build", path("sponge.ply"), "-r", "8", "--grid-of", path("a.vdag")}),
+                 2, "--grid-of");
+}
+
+TEST_F(Edit, TheSummaryAlsoComesAsJson) {
+  const ProcessResult result = run_voxdag(
+      {"combine", path("a.vdag"), path("b.vdag"), "--union", "-o", path("u.vdag"), "--json"});
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json.at("files"), std::vector<std::string>{path("u.vdag")});
+  EXPECT_EQ(json.at("bytes"), std::filesystem::file_size(path("u.vdag")));
+  EXPECT_EQ(json.at("voxels"), voxels_of("u.vdag").size());
+  EXPECT_GE(json.at("seconds"), 0);
+}
+
 }  // namespace
 }  // namespace voxdag::cli

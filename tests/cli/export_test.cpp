@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "sponge.hpp"
 
@@ -15,7 +16,8 @@ TEST_F(ExportCommand, WritesTheFormatOfTheExtension) {
                            "a.voxel.json", "a.ply", "a.npy", "a.raw"}) {
     const ProcessResult result = run_voxdag({"export", path("in.vdag"), "-o", path(name)});
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_EQ(result.out, "");
+    EXPECT_TRUE(result.out.starts_with(path(name) + ": ")) << result.out;
+    EXPECT_NE(result.out.find(" voxels, "), result.out.npos) << result.out;
     EXPECT_GT(std::filesystem::file_size(path(name)), 0u);
   }
   EXPECT_TRUE(std::filesystem::exists(path("a.voxel.bin")));
@@ -120,6 +122,27 @@ TEST_F(ExportCommand, NeverOverwritesItsInputBesideTheOutput) {
   std::filesystem::copy_file(path("in.vdag"), path("q.voxel.bin"));
   expect_failure(run_voxdag({"export", path("q.voxel.bin"), "-o", path("q.voxel.json")}), 2,
                  "an input file");
+}
+
+TEST_F(ExportCommand, TheSummaryCountsVoxelsAndFaces) {
+  const auto summary = [](const std::string& name, std::vector<std::string> options) {
+    options.insert(options.begin(), {"export", path("in.vdag"), "-o", path(name), "--json"});
+    return nlohmann::json::parse(run_voxdag(options).out);
+  };
+  const auto voxels = nlohmann::json::parse(
+      run_voxdag({"query", path("in.vdag"), "--count", "--json"}).out)["voxels"];
+  const auto faces = nlohmann::json::parse(
+      run_voxdag({"query", path("in.vdag"), "--area", "--json"}).out)["faces"];
+  const std::int64_t squares =
+      faces[0].get<std::int64_t>() + faces[1].get<std::int64_t>() + faces[2].get<std::int64_t>();
+  const auto stl = summary("n.stl", {"--watertight"});
+  EXPECT_EQ(stl["voxels"], voxels);
+  EXPECT_EQ(stl["triangles"], 2 * squares);
+  EXPECT_EQ(stl["bytes"], std::filesystem::file_size(path("n.stl")));
+  EXPECT_EQ(summary("n.ply", {"--faces"})["faces"], squares);
+  EXPECT_EQ(summary("n.npy", {}).count("faces"), 0u);
+  EXPECT_EQ(summary("n.html", {})["voxels"], voxels);
+  EXPECT_EQ(summary("n.raw", {"--window", "0,0,0,1,1,1"})["bytes"], 1);
 }
 
 }  // namespace

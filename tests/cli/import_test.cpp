@@ -55,7 +55,6 @@ TEST_F(ImportCommand, PointsNeedAGrid) {
     expect_failure(run_voxdag(options), status, text);
     EXPECT_EQ(files_like("none"), 0);
   };
-  refused({path("p.xyz")}, 1, "holds points, which need a resolution or a voxel size");
   refused({path("p.xyz"), "-r", "16", "--voxel-size", "1"}, 2, "--voxel-size");
   refused({path("in.vdag"), "-r", "16"}, 1, "is none of .npy");
   refused({path("nothing.xyz"), "-r", "16"}, 1, "nothing.xyz");

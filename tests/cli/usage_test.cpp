@@ -61,9 +61,52 @@ TEST(Usage, BenchRunsTheLabOrSaysHowToBuildIt) {
   }
 }
 
-TEST(Usage, NoCommandIsBadUsage) { expect_failure(run_voxdag({}), 2, "command"); }
+TEST(Usage, NoCommandAndHelpPrintTheHelp) {
+  const std::string help = run_voxdag({"--help"}).out;
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{}, {"help"}}) {
+    const ProcessResult result = run_voxdag(arguments);
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.out, help);
+  }
+}
 
-TEST(Usage, AnUnknownCommandIsNamed) { expect_failure(run_voxdag({"biuld"}), 2, "biuld"); }
+TEST(Usage, HelpOfACommandIsThatOfItsOption) {
+  for (const std::string& command : kCommands)
+    EXPECT_EQ(run_voxdag({"help", command}).out, run_voxdag({command, "--help"}).out);
+  expect_failure(run_voxdag({"help", "biuld"}), 2, "there is no command biuld");
+}
+
+TEST(Usage, AnUnknownCommandIsNamedWithTheNearestOne) {
+  expect_failure(run_voxdag({"biuld"}), 2, "there is no command biuld (did you mean build?)");
+  expect_failure(run_voxdag({"xyzzy"}), 2, "there is no command xyzzy (usage");
+}
+
+TEST(Usage, UnknownArgumentsAreNamedInTheirOrderWithTheNearestOptions) {
+  expect_failure(run_voxdag({"info", "a.vdag", "--jsno", "b.vdag", "--xyzzy=3"}), 2,
+                 "unknown arguments: --jsno (did you mean --json?), b.vdag, --xyzzy=3");
+  expect_failure(run_voxdag({"build", "a.obj", "--resolutoin", "64"}), 2,
+                 "unknown argument: --resolutoin (did you mean --resolution?)");
+  expect_failure(run_voxdag({"build", "--method"}), 2, "--method");
+}
+
+TEST(Usage, BritishAndAmericanSpellingsOfOptionsAreEqual) {
+  // An unknown option would be reported first.
+  for (const char* option :
+       {"--color", "--colour", "--center", "--centre", "--color-bound=0.1", "--colour-bound=0.1"})
+    expect_failure(run_voxdag({"build", "none.obj", "--color", option, "-o", "none.txt"}), 2,
+                   ".vdag");
+  expect_failure(run_voxdag({"export", "none.vdag", "--gray", "-o", "none.glb"}), 1, "none.vdag");
+  expect_failure(run_voxdag({"dilate", "none.vdag", "--neighbors", "7", "-o", "none.vdag"}), 2,
+                 "--neighbours");
+}
+
+TEST(Usage, BritishAndAmericanSpellingsOfValuesAreEqual) {
+  for (const char* rule : {"centre", "center"})
+    expect_failure(run_voxdag({"build", "none.obj", "--solid", "--rule", rule}), 1, "none.obj");
+  for (const char* unit : {"mm", "metre", "meters", "inches:centimeter", "feet"})
+    expect_failure(run_voxdag({"build", "none.obj", "--unit", unit}), 1, "none.obj");
+  expect_failure(run_voxdag({"build", "none.obj", "--rule", "centred"}), 2, "\"centred\"");
+}
 
 TEST(Usage, AnUnknownOptionIsNamed) {
   for (const std::string& command : kCommands)

@@ -45,6 +45,10 @@ class RunPage(unittest.TestCase):
     def test_dots_stand_for_lines(self):
         self.assertEqual(self.status(block("sh", "seq 5"), block("text", "1\n...\n4\n...")), 0)
 
+    def test_times_may_differ_and_other_numbers_not(self):
+        self.assertEqual(self.status(block("sh", "echo 3 voxels, 0.25 s"), block("text", "3 voxels, 11.07 s")), 0)
+        self.assertEqual(self.status(block("sh", "echo 3 voxels, 0.25 s"), block("text", "4 voxels, 0.25 s")), 1)
+
     def test_a_missing_module_skips_the_page(self):
         self.assertEqual(self.status(block("python", "import no_such_module")), 77)
 

@@ -52,6 +52,10 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
             "Also store the colours of all cells, filtered from textures, vertex colours and "
             "materials")
       .in_group(group);
+  command
+      .flag("--color-if-any", arguments.colors_if_any,
+            "As --color, if the mesh has textures, colours of vertices or coloured materials")
+      .in_group(group);
   command.flag("--normal", options.normals, "Also store the normals of all cells").in_group(group);
   command
       .flag("--material-ids", options.materials,

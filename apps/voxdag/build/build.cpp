@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "build/build_arguments.hpp"
+#include "build/written_output.hpp"
 #include "cli/commands.hpp"
 #include "cli/input_files.hpp"
 #include "cli/parse.hpp"
@@ -27,7 +28,7 @@ bool parse_structure(const std::string& text) {
 /// Parses the value of --rule. Returns whether it is "centre".
 bool parse_voxel_rule(const std::string& text) {
   if (text == "cover") return false;
-  if (text == "centre" || text == "center") return true;
+  if (text == "centre") return true;
   throw std::invalid_argument(fmt::format("\"{}\" is neither cover nor centre", text));
 }
 
@@ -40,7 +41,7 @@ BuildMethod parse_method(const std::string& text) {
 
 void add_grid_options(const Command& command, BuildArguments& arguments) {
   command.parsed("-r,--resolution", arguments.grid.resolution, parse_resolution, "N",
-                 "Voxels along the longest side: 1 to 1048576; 8K is 8192");
+                 "Voxels along the longest side: 1 to 1048576; 8K is 8192 (default: 1024)");
   command.parsed("--voxel-size", arguments.grid.voxel_size, parse_positive, "SIZE",
                  "Instead of -r: side of a voxel, in the units of the mesh");
   command.parsed(
@@ -111,21 +112,36 @@ bool is_in_parts(const BuildArguments& arguments) {
   return !arguments.work_folder.empty() || arguments.parts != 0;
 }
 
+/// Throws UsageError if options ask for another grid than that of --grid-of.
+void check_grid_of(const BuildArguments& arguments) {
+  const GridRequest& grid = arguments.grid;
+  if (grid.resolution || grid.voxel_size || grid.bounds || grid.origin || grid.padding != 0 ||
+      grid.center || is_in_parts(arguments))
+    throw UsageError("--grid-of",
+                     "sets the whole grid: not with -r, --voxel-size, --bounds, --origin, "
+                     "--padding, --center, --work or --parts");
+}
+
 /// Throws UsageError for options that belong to the other kind of output, and for wrong
 /// combinations.
 void check_build_arguments(const Command& command, BuildArguments& arguments, Session& session) {
+  const std::string maker = maker_of(arguments.output);
+  if (arguments.as_esvo && !maker.empty())
+    throw UsageError("--as esvo", "needs an output that ends in .esvo or .vdag");
+  if (session.json && maker == "render") throw UsageError("--json", "has no effect on a picture");
+  arguments.attributes.colors_if_any |= !maker.empty() && shows_colors(arguments.output);
   if (arguments.as_esvo)
     command.refuse_group(kDagOptions, "is for DAGs only, but the output is an ESVO (see --as)");
   else
     command.refuse_group(kEsvoOptions, "is for ESVOs only, but the output is a DAG (see --as)");
   if (is_in_parts(arguments) &&
-      (arguments.solid || arguments.attributes.is_wanted() || arguments.attributes.cuts_alpha() ||
-       arguments.compact || arguments.meshes.size() > 1 ||
-       arguments.method != BuildMethod::kHashConsed))
+      (arguments.solid || arguments.attributes.is_wanted() || arguments.attributes.colors_if_any ||
+       arguments.attributes.cuts_alpha() || arguments.compact || arguments.meshes.size() > 1 ||
+       !maker.empty() || arguments.method != BuildMethod::kHashConsed))
     throw UsageError(
         "--work and --parts build the surface's voxels by --method hash: not with --solid, "
-        "--color, --normal, --material-ids, --alpha cut, --compact, several meshes or another "
-        "method");
+        "--color, --normal, --material-ids, --alpha cut, --compact, several meshes, another method "
+        "or an output that is no .vdag file");
   if (arguments.solid) {
     if (arguments.attributes.cut.value_or(false))
       throw UsageError("--solid fills the whole surface: not with --alpha cut");
@@ -133,9 +149,11 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
   }
   arguments.access.outputs = {{"--output", arguments.output}};
   check_distinct(arguments.access.outputs, session);
-  if (arguments.grid.resolution.has_value() == arguments.grid.voxel_size.has_value())
-    throw UsageError("give exactly one of -r/--resolution and --voxel-size");
-  if (!arguments.grid.resolution) return;
+  if (arguments.grid.resolution && arguments.grid.voxel_size)
+    throw UsageError("give -r/--resolution or --voxel-size, not both");
+  if (!arguments.grid_of.empty()) return check_grid_of(arguments);
+  if (arguments.grid.voxel_size) return;
+  if (!arguments.grid.resolution) arguments.grid.resolution = kDefaultResolution;
   const int levels = levels_of(*arguments.grid.resolution);
   arguments.esvo.bake.check_levels(levels);
   arguments.attributes.check_levels(levels);
@@ -171,7 +189,12 @@ void add_build_command(const Command& program, Session& session) {
           "another format if voxdag was built with assimp; also compressed (.gz, .zst). "
           "-: standard input")
       .required();
-  command.text("-o,--output", arguments->output, "FILE", "The file to write").required();
+  command.text(
+      "-o,--output", arguments->output, "FILE",
+      "The file to write: .vdag, .esvo, a page (.html, FOLDER/), a picture (.png, .exr), or "
+      "a file that `voxdag export` writes (.glb, .vox, ...). All but .vdag and .esvo are made "
+      "of a temporary DAG, with the mesh's colours if it has some (default: the name of the "
+      "first MESH with .vdag, in the current folder; it replaces no other kind of file)");
   const Option as =
       command.parsed("--as", arguments->as_esvo, parse_structure, "dag|esvo",
                      "dag: the minimal DAG; esvo: an octree with contours, colours and normals "
@@ -222,24 +245,51 @@ void add_build_command(const Command& program, Session& session) {
                  "needs more is refused (default: three quarters of the available memory)");
   add_parts_options(command, *arguments);
   add_mesh_access_options(command, arguments->access);
+  command.parsed(
+      "--texture", arguments->access.texture,
+      [arguments = arguments.get()](const std::string& text) {
+        arguments->attributes.options.colors = true;
+        return text;
+      },
+      "IMAGE",
+      "Take the colours from this PNG or JPEG file at the mesh's texture coordinates, not from the "
+      "images that the mesh names. Implies --color for a DAG");
+  command.text(
+      "--grid-of", arguments->grid_of, "FILE",
+      "Build in the grid of this .vdag or .esvo file, so that `voxdag combine` and `voxdag "
+      "diff` take both. Parts of the mesh outside are left out");
   command.flag("--stats", arguments->stats, "Also print the number of nodes of each level")
       .only_if([&session] { return !session.json; }, "with --json, which always prints all levels")
-      .only_if([&session] { return !session.quiet; }, "with --quiet");
+      .only_if([&session] { return !session.quiet; }, "with --quiet")
+      .only_if([arguments = arguments.get()] { return maker_of(arguments->output).empty(); },
+               "on an output that is no .vdag or .esvo file");
   add_esvo_options(command, arguments->esvo);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   add_json_option(command, session);
   command.when_parsed([arguments, as, command, &session] {
+    const std::string first = arguments->meshes.front();
     arguments->meshes = expand_inputs(
         arguments->meshes, {".obj", ".ply", ".stl", ".off", ".gltf", ".glb", ".3mf", ".dae"});
     session.subject = arguments->meshes.front();
     session.inputs = arguments->meshes;
-    if (!as.is_given()) arguments->as_esvo = arguments->output.ends_with(".esvo");
+    session.inputs.insert(session.inputs.end(), {arguments->access.texture, arguments->grid_of});
+    if (arguments->output.empty())
+      arguments->output =
+          default_output(first, session.subject, arguments->as_esvo ? ".esvo" : ".vdag");
+    const bool is_named_esvo = arguments->output.ends_with(".esvo");
+    if (!as.is_given()) arguments->as_esvo = is_named_esvo;
+    if (is_named_esvo && !arguments->as_esvo)
+      throw UsageError("--as dag", "contradicts the output, which ends in .esvo");
     check_build_arguments(command, *arguments, session);
     session.work = [arguments, &session] {
-      if (arguments->as_esvo) return build_esvo_file(*arguments, session);
-      is_in_parts(*arguments) ? build_dag_in_parts(*arguments, session)
-                              : build_dag_file(*arguments, session);
+      const std::string output = arguments->output;
+      build_output(output, session, [&](const std::string& file) {
+        arguments->output = file;
+        if (arguments->as_esvo) return build_esvo_file(*arguments, session);
+        is_in_parts(*arguments) ? build_dag_in_parts(*arguments, session)
+                                : build_dag_file(*arguments, session);
+      });
     };
   });
 }

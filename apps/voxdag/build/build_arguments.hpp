@@ -9,6 +9,7 @@
 #include "build/bake_ao.hpp"
 #include "build/displace_option.hpp"
 #include "build/placing_options.hpp"
+#include "cli/input_files.hpp"
 #include "cli/mesh_input.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
@@ -30,6 +31,7 @@ struct BuildArguments {
   std::string output;
   MeshAccess access;
   GridRequest grid;
+  std::string grid_of;  ///< The file whose grid is used; empty: `grid` chooses it.
   BuildMethod method = BuildMethod::kHashConsed;
   std::uint64_t memory_limit = 0;  ///< Bytes; 0: the default.
   bool stats = false;
@@ -54,7 +56,7 @@ struct BuildArguments {
 };
 
 /// Builds a DAG from the mesh files, writes it, and prints the summary.
-void build_dag_file(const BuildArguments& arguments, Session& session);
+void build_dag_file(BuildArguments arguments, Session& session);
 
 /// Builds a DAG in parts, alone or with the other processes of the job; see cluster/parts_job.hpp.
 void build_dag_in_parts(const BuildArguments& arguments, Session& session);
@@ -63,9 +65,17 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session);
 /// summary.
 void build_esvo_file(const BuildArguments& arguments, Session& session);
 
+/// Returns the grid of the build of a mesh: as `request` chooses it, or that of --grid-of. Throws
+/// Error.
+inline Grid grid_of_build(const BuildArguments& arguments, const Mesh& mesh,
+                          const GridRequest& request) {
+  return arguments.grid_of.empty() ? grid_for(mesh, request) : grid_of_file(arguments.grid_of);
+}
+
 /// Returns the settings that shape the voxels, for the metadata of the output.
 inline std::map<std::string, std::string> build_settings(const BuildArguments& arguments) {
   std::map<std::string, std::string> settings = settings_of(arguments.grid);
+  if (!arguments.grid_of.empty()) settings["grid_from"] = settings["scale_from"] = "file";
   if (arguments.solid)
     add_solid_settings({*arguments.solid, arguments.winding_threshold, arguments.by_centre},
                        settings);

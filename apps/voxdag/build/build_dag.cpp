@@ -15,6 +15,7 @@
 #include "voxdag/file/report/dag_report.hpp"
 #include "voxdag/file/report/human.hpp"
 #include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/mesh/has_colors.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
 #include "voxdag/stored/compact/compact_bytes.hpp"
 #include "voxdag/stored/compact/encode_svdag.hpp"
@@ -85,7 +86,7 @@ Svdag fill(const SvdagView& cover, const Mesh& mesh, const Grid& grid,
 
 }  // namespace
 
-void build_dag_file(const BuildArguments& arguments, Session& session) {
+void build_dag_file(BuildArguments arguments, Session& session) {
   check_writable(arguments.output);
   Stopwatch watch;
   StageSeconds seconds;
@@ -95,17 +96,23 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   MeshAccess access = arguments.access;
   access.memory = &memory;
   access.objects = arguments.attributes.options.materials;
-  const bool needs_appearance =
-      arguments.attributes.needs_shading() || arguments.attributes.cuts_alpha();
-  JoinedMeshes meshes = read_mesh_files(arguments.meshes, needs_appearance, access, session);
+  JoinedMeshes meshes =
+      read_mesh_files(arguments.meshes, arguments.attributes.needs_appearance(), access, session);
   MeshWithAppearance& source = meshes.source;
   Mesh& mesh = source.mesh;
+  if (arguments.attributes.options.colors && !has_colors(source.appearance))
+    print_warnings({session.subject + ": has no colours: --color stores one grey for all cells"},
+                   session);
+  if (arguments.attributes.colors_if_any)
+    arguments.attributes.options.colors |= has_colors(source.appearance);
+  arguments.attributes.colors_if_any = false;
+  const bool needs_appearance = arguments.attributes.needs_appearance();
   NamedIds ids;
   if (access.objects) ids = named_ids(arguments.attributes.ids, meshes, arguments.meshes, &memory);
   seconds.read = watch.lap();
 
   DagReport report;
-  report.metadata.grid = grid_for(mesh, arguments.grid);
+  report.metadata.grid = grid_of_build(arguments, mesh, arguments.grid);
   warn_of_rounding(session.subject, mesh, report.metadata.grid.voxel_size, session);
   arguments.attributes.check_levels(report.metadata.grid.levels);
   report.metadata.source = {names_of(arguments.meshes), mesh.vertices.size(),

@@ -12,12 +12,11 @@
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
 #include "cli/reduced_dag.hpp"
-#include "cli/stopwatch.hpp"
+#include "cli/written_files.hpp"
 #include "voxdag/algebra/coarsen.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/file/long_vdag_file.hpp"
-#include "voxdag/file/report/human.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/stored/compact/encode_svdag.hpp"
 
@@ -71,7 +70,6 @@ DagModel read_input(const ConvertArguments& arguments, DagReduction& reduction,
 
 void convert(const ConvertArguments& arguments, Session& session) {
   check_writable(arguments.output);
-  const Stopwatch watch;
   MemoryBudget memory = command_budget(arguments.memory_limit);
   DagReduction reduction;
   const DagModel file = read_input(arguments, reduction, memory, session);
@@ -86,13 +84,10 @@ void convert(const ConvertArguments& arguments, Session& session) {
   } else {
     write_vdag(arguments.output, dag.dag(), dag.metadata(), attributes, form);
   }
-  session.bar.clear();
-  if (session.quiet) return;
-  std::error_code unknown;
-  const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
-  fmt::print("{}: {}, {} form, {}\n", arguments.output,
-             human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
-             compact ? "compact" : "plain", human_seconds(watch.since_start()));
+  print_written({{arguments.output},
+                 {{"voxels", dag.metadata().counts.voxels}},
+                 compact ? "compact form" : "plain form"},
+                session);
 }
 
 /// Adds the options of the output that both commands have.
@@ -108,6 +103,7 @@ void add_work_options(const Command& command, const std::shared_ptr<ConvertArgum
                       Session& session) {
   add_memory_option(command, arguments->memory_limit);
   add_threads_option(command, session);
+  add_json_option(command, session);
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
     check_distinct({{"--output", arguments->output}}, session);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "build/placing_options.hpp"
+#include "build/written_output.hpp"
 #include "cli/commands.hpp"
 #include "cli/input_files.hpp"
 #include "cli/output_files.hpp"
@@ -57,6 +58,8 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
           open_voxel_source(file, {arguments.threshold, !options.voxel_size && !options.origin,
                                    arguments.format, arguments.grid, work});
       print_warnings(warnings_of(*source, file), session);
+      if (source->has_points() && !source->grid() && !options.resolution && !options.voxel_size)
+        options.resolution = kDefaultResolution;
       check_grid_options(*source, options);
       sources.push_back(
           moved_source(std::move(source),
@@ -157,7 +160,11 @@ void add_import_command(const Command& program, Session& session) {
           ".nhdr, .nii, .vdb, or a folder of .png slices. Each of them may also be compressed "
           "(.gz, .zst). -: standard input")
       .required();
-  command.text("-o,--output", arguments->output, "OUT", "The .vdag file to write").required();
+  command.text(
+      "-o,--output", arguments->output, "OUT",
+      "The file to write: .vdag, a page (.html, FOLDER/), a picture (.png, .exr), or a file "
+      "that `voxdag export` writes (.glb, .vox, ...) (default: the name of the first FILE with "
+      ".vdag, in the current folder; it replaces no other kind of file)");
   command.text("--format", arguments->format, "EXT",
                "Read FILE as if its name ended in .EXT: needed for standard input");
   command.text("--grid", arguments->grid, "NAME",
@@ -165,8 +172,8 @@ void add_import_command(const Command& program, Session& session) {
   ImportOptions& options = arguments->options;
   const Option resolution =
       command.parsed("-r,--resolution", options.resolution, parse_resolution, "N",
-                     "Voxels along the longest side, 1 to 1048576 (default for voxels: that of "
-                     "FILE, or the least that holds them)");
+                     "Voxels along the longest side, 1 to 1048576 (default for points: 1024; for "
+                     "voxels: that of FILE, or the least that holds them)");
   command
       .parsed(
           "--voxel-size", options.voxel_size, parse_positive, "SIZE",
@@ -199,11 +206,24 @@ void add_import_command(const Command& program, Session& session) {
   add_quiet_option(command, session);
   add_json_option(command, session);
   command.when_parsed([arguments, &session] {
+    const std::string first = arguments->files.front();
     arguments->files = files_of(arguments->files);
     session.subject = arguments->files.front();
+    if (arguments->output.empty())
+      arguments->output = default_output(first, session.subject, ".vdag");
     session.inputs = arguments->files;
     check_distinct({{"--output", arguments->output}}, session);
-    session.work = [arguments, &session] { import(*arguments, session); };
+    if (arguments->output.ends_with(".esvo"))
+      throw UsageError("--output", "ends in .esvo, and import makes DAGs");
+    if (session.json && maker_of(arguments->output) == "render")
+      throw UsageError("--json", "has no effect on a picture");
+    session.work = [arguments, &session] {
+      const std::string output = arguments->output;
+      build_output(output, session, [&](const std::string& file) {
+        arguments->output = file;
+        import(*arguments, session);
+      });
+    };
   });
 }
 

@@ -2,10 +2,27 @@
 
 #include <fmt/core.h>
 
+#include <string_view>
+#include <utility>
+
 #include "cli/parse.hpp"
 
 namespace voxdag::cli {
 namespace {
+
+/// Returns "[FROM:]UNIT" with the names of units shortened: "inches:metre" becomes "in:m".
+std::string short_units(std::string_view text) {
+  constexpr std::pair<std::string_view, std::string_view> kNames[] = {
+      {"millimetre", "mm"}, {"centimetre", "cm"}, {"metre", "m"}, {"inch", "in"},
+      {"inches", "in"},     {"foot", "ft"},       {"feet", "ft"}};
+  if (const std::size_t colon = text.find(':'); colon != text.npos)
+    return short_units(text.substr(0, colon)) + ":" + short_units(text.substr(colon + 1));
+  const std::string_view singular =
+      text.ends_with("metres") ? text.substr(0, text.size() - 1) : text;
+  for (const auto& [name, shorter] : kNames)
+    if (singular == name) return std::string(shorter);
+  return std::string(text);
+}
 
 /// Returns a parser of the option that `member` stores: InputTransform checks the text.
 template <class Member>
@@ -44,7 +61,11 @@ void add_transform_options(const Command& command, TransformRequest& transform) 
       "Turn the input so that this axis points up. FROM: the axis that points up in the input "
       "(default: as a .dae or .fbx file says, z for .stl, .3mf, points and volumes, else y)");
   command.parsed(
-      "--unit", transform.unit, transform_text(&TransformRequest::unit), "[FROM:]mm|cm|m|in|ft",
+      "--unit", transform.unit,
+      [parse = transform_text(&TransformRequest::unit)](const std::string& text) {
+        return parse(short_units(text));
+      },
+      "[FROM:]mm|cm|m|in|ft",
       "Unit of the result. FROM: unit of the input, which is converted (default: m for glTF "
       "and COLLADA, mm for 3MF, as a .fbx file says, else the unit of the result)");
   command.parsed("--scale", transform.scale, parse_positive, "FACTOR",

@@ -6,7 +6,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
-#include "voxdag/file/report/human.hpp"
+#include "cli/written_files.hpp"
 #include "voxdag/formats/scenes/ply_writer.hpp"
 #include "voxdag/formats/scenes/scenes.hpp"
 #include "voxdag/render/film/path_file.hpp"
@@ -72,10 +72,11 @@ void make(const SceneArguments& arguments, Session& session) {
                                             {"vertices", mesh.vertices.size()},
                                             {"triangles", mesh.triangles.size()}};
     fmt::print("{}", json_text(summary));
-  } else if (!session.quiet) {
-    fmt::print("{}: {} triangles, {} vertices\n", arguments.output,
-               with_commas(mesh.triangles.size()), with_commas(mesh.vertices.size()));
+    return;
   }
+  print_written({{arguments.output},
+                 {{"triangles", mesh.triangles.size()}, {"vertices", mesh.vertices.size()}}},
+                session);
 }
 
 /// Sets the work of the session. Throws UsageError if arguments are missing.

@@ -6,9 +6,26 @@
 #include <stdexcept>
 
 #include "cli/output_files.hpp"
+#include "cli/spelling.hpp"
 
 namespace voxdag::cli {
 namespace {
+
+/// Calls store() with the text in other spellings: "centre" and "center". Leaves what follows "=",
+/// which may be a file. Returns whether one of them was stored.
+bool stores_other_spelling(const std::function<void(const std::string&)>& store,
+                           const std::string& text) {
+  const std::string name = text.substr(0, text.find('='));
+  for (const std::string& other : other_spellings(name)) {
+    try {
+      if (other == name) continue;
+      store(other + text.substr(name.size()));
+      return true;
+    } catch (const std::invalid_argument&) {  // not this one either
+    }
+  }
+  return false;
+}
 
 /// Calls store(text). Turns exceptions of parse functions into a UsageError that names the option.
 void store_or_refuse(const CLI::Option& option,
@@ -18,7 +35,7 @@ void store_or_refuse(const CLI::Option& option,
   try {
     store(text);
   } catch (const std::invalid_argument& wrong) {
-    throw UsageError(option.get_name(), wrong.what());
+    if (!stores_other_spelling(store, text)) throw UsageError(option.get_name(), wrong.what());
   }
 }
 

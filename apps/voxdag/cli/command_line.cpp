@@ -1,10 +1,13 @@
 #include "cli/command_line.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <sstream>
 #include <string_view>
+
+#include "cli/spelling.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -88,11 +91,70 @@ std::string recognised_command(const CLI::App& app) {
   return words;
 }
 
+/// Returns the names of a command's options: "--output", "-o".
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+/// Returns "WORD", or "WORD (did you mean NAME?)".
+std::string with_nearest(const std::string& word, const std::vector<std::string>& names) {
+  const std::string nearest = nearest_name(word, names);
+  return nearest.empty() ? word : fmt::format("{} (did you mean {}?)", word, nearest);
+}
+
+/// Returns the line about arguments that the command does not know, in their order; else what CLI11
+/// says.
 std::string reason_of(const CLI::App& app, const CLI::ParseError& error) {
-  const std::vector<std::string> unknown = app.remaining();
-  if (app.get_subcommands().empty() && !unknown.empty())
-    return fmt::format("there is no command \"{}\"", unknown[0]);
-  return error.what();
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const std::vector<std::string> unknown =
+      chosen.empty() ? app.remaining() : chosen[0]->remaining();
+  if (unknown.empty()) return error.what();
+  if (chosen.empty() && !unknown[0].starts_with('-'))
+    return "there is no command " + with_nearest(unknown[0], command_names(app));
+  const std::vector<std::string> options = option_names(chosen.empty() ? app : *chosen[0]);
+  std::vector<std::string> words;
+  for (const std::string& word : unknown)
+    words.push_back(word.starts_with('-') ? with_nearest(word.substr(0, word.find('=')), options)
+                                          : word);
+  return fmt::format("unknown argument{}: {}", words.size() == 1 ? "" : "s",
+                     fmt::join(words, ", "));
+}
+
+/// Turns "help build" into "build --help", and options in another spelling into those that the
+/// command has: "--colour".
+std::vector<std::string> usual_arguments(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.empty()) return {"--help"};
+  if (words[0] == "help") {
+    words.erase(words.begin());
+    words.push_back("--help");
+  }
+  const std::vector<std::string> commands = command_names(app);
+  if (std::find(commands.begin(), commands.end(), words[0]) == commands.end()) return words;
+  const std::vector<std::string> options = option_names(*app.get_subcommand(words[0]));
+  const auto is_known = [&](const std::string& name) {
+    return std::find(options.begin(), options.end(), name) != options.end();
+  };
+  for (std::string& word : words) {
+    if (word == "--") break;
+    const std::string name = word.substr(0, word.find('='));
+    if (!word.starts_with("--") || is_known(name)) continue;
+    for (const std::string& other : other_spellings(name))
+      if (is_known(other)) word.replace(0, name.size(), other);
+  }
+  return words;
 }
 
 }  // namespace
@@ -114,7 +176,9 @@ Command CommandLine::root() const { return Command(*app_); }
 bool CommandLine::parse(int argc, char** argv) {
   try {
     refuse_empty_values(argc, argv);
-    app_->parse(argc, argv);
+    std::vector<std::string> words = usual_arguments(*app_, argc, argv);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    app_->parse(words);
     return true;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {

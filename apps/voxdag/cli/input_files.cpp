@@ -4,10 +4,16 @@
 #include <glob.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 
 #include "cli/usage_error.hpp"
 #include "voxdag/core/lower_case.hpp"
+#include "voxdag/core/with_file_name.hpp"
+#include "voxdag/file/esvo_parse.hpp"
+#include "voxdag/file/vdag_container.hpp"
+#include "voxdag/file/vdag_format.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -57,6 +63,23 @@ std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments
     files.insert(files.end(), found.begin(), found.end());
   }
   return files;
+}
+
+bool is_container(const std::string& path) {
+  std::error_code unknown;
+  if (!fs::is_regular_file(path, unknown)) return false;
+  char magic[sizeof kVdagMagic];
+  std::ifstream file(path, std::ios::binary);
+  return file.read(magic, sizeof magic) && std::memcmp(magic, kVdagMagic, sizeof magic) == 0;
+}
+
+Grid grid_of_file(const std::string& path) {
+  const VdagContainer file(path);
+  const std::vector<VdagChunk> chunks = file.chunks();
+  return with_file_name(path, [&] {
+    return file.kind() == VdagKind::kEsvo ? read_esvo_metadata(chunks).grid
+                                          : read_vdag_metadata(chunks).grid;
+  });
 }
 
 std::string names_of(const std::vector<std::string>& files) {

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "voxdag/core/grid.hpp"
+
 namespace voxdag::cli {
 
 /// Returns the files in a folder whose names end in one of `endings`, in any case, sorted by name.
@@ -15,6 +17,12 @@ std::vector<std::string> files_in(const std::string& folder,
 /// files.
 std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments,
                                        const std::vector<std::string>& endings);
+
+/// Returns whether the path is a regular file that begins like a .vdag or .esvo file.
+bool is_container(const std::string& path);
+
+/// Returns the grid of a .vdag or .esvo file. Throws Error.
+Grid grid_of_file(const std::string& path);
 
 /// Returns the names of the files without their folders: "a.obj, b.glb"; of more than four files,
 /// the first four names and the number of the others.

@@ -8,6 +8,7 @@
 #include "cli/input_files.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/float_origin.hpp"
+#include "voxdag/core/io/open_input.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/mesh/join_meshes.hpp"
@@ -22,6 +23,19 @@ bool parse_importers(const std::string& text) {
   if (text != "any" && text != "safe")
     throw std::invalid_argument("\"" + text + "\" is neither safe nor any");
   return text == "any";
+}
+
+/// Gives all materials the colours of an image. Throws Error if the mesh has no texture
+/// coordinates, or the image cannot be opened.
+void set_texture(Appearance& appearance, const std::string& texture) {
+  if (appearance.uvs.empty()) throw Error("has no texture coordinates, which --texture needs");
+  open_input(texture);
+  for (Material& material : appearance.materials) {
+    material.color_map = {};
+    material.color_map.image = static_cast<int>(appearance.images.size());
+    material.texture_tint = {1, 1, 1};
+  }
+  appearance.images.push_back({texture, texture, {}});
 }
 
 /// Reads a mesh, moves it, and checks that it names no output.
@@ -43,6 +57,7 @@ MeshWithAppearance read_and_check(const std::string& file, bool with_appearance,
   print_warnings(result.warnings, session);
   result.warnings.clear();
   with_file_name(file, [&] {
+    if (!access.texture.empty()) set_texture(result.appearance, access.texture);
     move_mesh(result, InputTransform(access.transform, mesh_custom(file, options)), options.work);
   });
   return result;

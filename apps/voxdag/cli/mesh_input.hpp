@@ -19,6 +19,7 @@ struct MeshAccess {
   bool any_importer = false;        ///< As ReadOptions::any_assimp_importer.
   bool objects = false;             ///< As ReadOptions::objects.
   std::string format;               ///< As ReadOptions::format.
+  std::string texture;              ///< The image of all materials; empty: those of the mesh.
   TransformRequest transform;       ///< Moves each mesh, by the customs of its format.
   MemoryBudget* memory = nullptr;   ///< The budget of ReadOptions::work.
   std::vector<OutputFile> outputs;  ///< Files that the command writes: no mesh may name them.

@@ -9,6 +9,7 @@
 #include <new>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "cli/command_line.hpp"
 #include "cli/interrupt.hpp"
@@ -45,22 +46,45 @@ void work(Session& session) {
   if (session.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, session.threads);
   session.bar.enable(!session.quiet);
-  session.work();
+  const std::function<void()> chosen = session.work;  // It may run other commands.
+  chosen();
   session.bar.clear();
   check_output();
 }
 
+/// Declares all subcommands.
+void add_commands(const CommandLine& line, const Program& program, Session& session) {
+  for (const Family& family : program.families)
+    for (const AddCommand add : family.commands)
+      add(line.root().with_heading(family.heading), session);
+}
+
+/// Session::run_command of the program.
+void run_command(std::vector<std::string> arguments, const Program& program, Session& session) {
+  const CommandState outer = std::exchange<CommandState>(session, {});
+  CommandLine line(program.name, program.purpose, program.version);
+  add_commands(line, program, session);
+  arguments.insert(arguments.begin(), program.name);
+  std::vector<char*> texts;
+  for (std::string& argument : arguments) texts.push_back(argument.data());
+  line.parse(static_cast<int>(texts.size()), texts.data());
+  const std::function<void()> chosen = session.work;
+  chosen();
+  static_cast<CommandState&>(session) = outer;
+}
+
 int run(int argc, char** argv, const Program& program) {
   CommandLine line(program.name, program.purpose, program.name + " " + program.version,
-                   "`" + program.name +
-                       " COMMAND --help` prints the options of a command, with an example.\n\n"
+                   "`" + program.name + " COMMAND --help` or `" + program.name +
+                       " help COMMAND` prints the options of a command, with an example.\n\n"
                        "Results go to stdout; progress, warnings and errors go to stderr. Exit "
                        "status: 0 success, 1 failure, 2 wrong usage, 128 + N if signal N ended the "
                        "work.");
   Session session;
-  for (const Family& family : program.families)
-    for (const AddCommand add : family.commands)
-      add(line.root().with_heading(family.heading), session);
+  add_commands(line, program, session);
+  session.run_command = [&](const std::vector<std::string>& arguments) {
+    run_command(arguments, program, session);
+  };
   try {
     if (!line.parse(argc, argv)) {
       check_output();
@@ -71,7 +95,8 @@ int run(int argc, char** argv, const Program& program) {
   }
   cancel_on_signals(session.progress);
   const std::string subject = session.subject.empty() ? "" : session.subject + ": ";
-  const auto fail = [&](const std::string& text, int status) {
+  const auto fail = [&](std::string text, int status) {
+    text = session.named(text);
     session.bar.clear();
     // After a signal, system calls may fail.
     const int signal = cancelling_signal();

@@ -17,6 +17,13 @@
 
 namespace voxdag::cli {
 
+std::string Session::named(std::string text) const {
+  if (scratch.empty()) return text;
+  for (std::size_t at = 0; (at = text.find(scratch, at)) != text.npos; at += scratch_name.size())
+    text.replace(at, scratch.size(), scratch_name);
+  return text;
+}
+
 Option add_threads_option(const Command& command, Session& session) {
   return command.optional_number<int>("--threads", session.threads, NumberRange::whole(1, 4096),
                                       "N", "Number of threads (default: one per processor)");
@@ -46,7 +53,7 @@ void print_line(std::string text) {
 void print_warnings(const std::vector<std::string>& warnings, Session& session) {
   if (session.is_silent) return;
   session.bar.clear();
-  for (const std::string& warning : warnings) print_line("warning: " + warning);
+  for (const std::string& warning : warnings) print_line("warning: " + session.named(warning));
 }
 
 void announce_cost(const std::string& work, double seconds, Session& session) {

@@ -9,23 +9,36 @@
 
 #include "cli/command.hpp"
 #include "cli/progress_bar.hpp"
+#include "cli/stopwatch.hpp"
 #include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag::cli {
 
 class Job;
 
-/// A subcommand declares its options and sets `work`, which runs after the complete command line
-/// was checked.
-struct Session {
+/// What one command line asks for. A subcommand declares its options and sets `work`, which runs
+/// after the complete command line was checked.
+struct CommandState {
   std::function<void()> work;
   /// Input files, which are never overwritten.
   std::vector<std::string> inputs;
-  std::string subject;     ///< The main input; errors without a file name it.
-  int threads = 0;         ///< 0: one per processor.
-  bool quiet = false;      ///< No progress bar and no summary.
-  bool json = false;       ///< Print the result as JSON.
+  std::string subject;  ///< The main input; errors without a file name it.
+  int threads = 0;      ///< 0: one per processor.
+  bool quiet = false;   ///< No progress bar and no summary.
+  bool json = false;    ///< Print the result as JSON.
+};
+
+struct Session : CommandState {
+  Stopwatch watch;         ///< Since the program began.
   bool is_silent = false;  ///< No warnings: rank 0 of the job prints them.
+  /// Runs another command of the program in this process: {"export", "a.vdag", "-o", "a.glb"}. The
+  /// state of the session is the same afterwards. Throws what the command throws, and UsageError.
+  std::function<void(const std::vector<std::string>& arguments)> run_command;
+  /// A file without a name (ScratchDag), and what messages call it; empty: none.
+  std::string scratch, scratch_name;
+
+  /// Returns the text with the name of the scratch file in place of its path.
+  std::string named(std::string text) const;
 
   ProgressBar bar;
   Progress progress{[this](std::string_view stage, double fraction, std::uint64_t items) {

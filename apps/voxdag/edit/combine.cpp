@@ -3,6 +3,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,13 +14,40 @@
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
 #include "edit/edited_file.hpp"
+#include "voxdag/algebra/shift.hpp"
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/model/aligned_models.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
+#include "voxdag/stored/svdag/voxel_set.hpp"
 
 namespace voxdag::cli {
 namespace {
+
+/// Returns the least coordinates of voxels along each axis.
+Vec3i lowest_corner(const SvdagView& dag) {
+  const auto side = std::int32_t{1} << dag.levels;
+  Vec3i low{side, side, side};
+  VoxelSet(dag).for_each_leaf_block(Box3i{{0, 0, 0}, low}, [&](Vec3i origin, std::uint64_t mask) {
+    for (; mask != 0; mask &= mask - 1) {
+      const Vec3i voxel =
+          origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
+      for (int axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], voxel[axis]);
+    }
+  });
+  return low;
+}
+
+/// Returns the shift, in voxels, that makes the voxels of `a` those of `b`, if there is one.
+std::optional<Vec3i> equal_when_shifted(const SvdagView& a, const SvdagView& b, Work work) {
+  if (a.is_empty() || b.is_empty() || count_svdag(a).voxels != count_svdag(b).voxels) return {};
+  const Vec3i by = lowest_corner(b) - lowest_corner(a);
+  const int levels = std::max(a.levels, b.levels);
+  const Svdag moved = shift(a, by, levels, work), same = shift(b, {}, levels, work);
+  const Svdag differing = combine(moved.view(), same.view(), SetOperation::kSymmetric, work);
+  return differing.view().is_empty() ? std::optional(by) : std::nullopt;
+}
 
 /// Two files in one grid.
 class AlignedFiles {
@@ -27,15 +57,42 @@ class AlignedFiles {
       : first_(first, work), second_(second, work) {
     refuse_attributes(first_, first, arguments);
     refuse_attributes(second_, second, arguments);
-    with_file_name(second, [&] { models_.emplace(first_, second_, work); });
+    with_file_name(second, [&] {
+      try {
+        models_.emplace(first_, second_, work);
+      } catch (const Error& error) {
+        if (!error.reason().starts_with("the grids")) throw;
+        throw Error(fmt::format("{}; voxdag build --grid-of {} builds in that grid{}",
+                                error.reason(), first, shift_text(work)));
+      }
+    });
   }
   AlignedFiles(const AlignedFiles&) = delete;
   AlignedFiles& operator=(const AlignedFiles&) = delete;
 
   const DagModel& first() const { return first_; }
   const AlignedModels& models() const { return *models_; }
+  /// Returns by how many voxels the first file must move to have the voxels of the second one; none
+  /// if no shift does that.
+  std::optional<Vec3i> equal_shift(Work work) const {
+    const std::optional<Vec3i> by = equal_when_shifted(first_.view(), second_.view(), work);
+    if (!by) return by;
+    const Vec3d place = first_.grid().to_grid(second_.grid().to_world(Vec3d(*by)));
+    return Vec3i{static_cast<std::int32_t>(std::lround(place.x)),
+                 static_cast<std::int32_t>(std::lround(place.y)),
+                 static_cast<std::int32_t>(std::lround(place.z))};
+  }
 
  private:
+  /// Returns what to add to the error if the voxels are equal in their own grids.
+  std::string shift_text(Work work) const {
+    const std::optional<Vec3i> by = equal_when_shifted(first_.view(), second_.view(), work);
+    if (!by) return "";
+    const Vec3d at = second_.grid().to_world(Vec3d(*by)) - first_.grid().origin;
+    return fmt::format("; the voxels are equal if the first file moves by {:.9g},{:.9g},{:.9g}",
+                       at.x, at.y, at.z);
+  }
+
   DagModel first_, second_;
   std::optional<AlignedModels> models_;
 };
@@ -88,28 +145,36 @@ struct VoxelCounts {
   std::uint64_t only_first, only_second, both;
 };
 
-void print_counts(const VoxelCounts& counts, const DiffArguments& arguments, Session& session) {
+/// `by`: the shift of the first file that makes both equal.
+void print_counts(const VoxelCounts& counts, const std::optional<Vec3i>& by,
+                  const DiffArguments& arguments, Session& session) {
   session.bar.clear();
   if (session.json) {
-    const nlohmann::ordered_json json = {{"only_in_first", counts.only_first},
-                                         {"only_in_second", counts.only_second},
-                                         {"in_both", counts.both},
-                                         {"differing", counts.only_first + counts.only_second}};
+    nlohmann::ordered_json json = {{"only_in_first", counts.only_first},
+                                   {"only_in_second", counts.only_second},
+                                   {"in_both", counts.both},
+                                   {"differing", counts.only_first + counts.only_second}};
+    if (by) json["equal_when_shifted"] = {by->x, by->y, by->z};
     fmt::print("{}", json_text(json));
   } else if (!session.quiet) {
     fmt::print("only in {}: {} voxels\nonly in {}: {} voxels\nin both: {} voxels\n",
                session.subject, with_commas(counts.only_first), arguments.second,
                with_commas(counts.only_second), with_commas(counts.both));
+    if (by)
+      fmt::print("equal if {} is shifted: voxdag shift --by {},{},{}\n", session.subject, by->x,
+                 by->y, by->z);
   }
 }
 
 /// Writes the voxels that differ. Prints no summary of the file: the command prints its counts.
 void write_difference(const DiffArguments& arguments, Svdag differing, const AlignedFiles& files,
                       MemoryBudget& memory, Session& session) {
-  const bool quiet = std::exchange(session.quiet, true);
+  const CommandState asked = session;
+  session.quiet = true;
+  session.json = false;
   write_edited(arguments.edit, std::move(differing), files.models().grid(), files.first(),
                edit_text(SetOperation::kSymmetric, arguments.second), memory, session);
-  session.quiet = quiet;
+  static_cast<CommandState&>(session) = asked;
 }
 
 void run_diff(const DiffArguments& arguments, Session& session) {
@@ -126,7 +191,10 @@ void run_diff(const DiffArguments& arguments, Session& session) {
   const VoxelCounts counts{only_first, either - only_first, count(SetOperation::kIntersection)};
   if (!arguments.edit.output.empty())
     write_difference(arguments, std::move(differing), files, memory, session);
-  print_counts(counts, arguments, session);
+  std::optional<Vec3i> by;
+  if (counts.only_first > 0 && counts.only_first == counts.only_second)
+    by = files.equal_shift({&memory, &session.progress});
+  print_counts(counts, by, arguments, session);
 }
 
 }  // namespace

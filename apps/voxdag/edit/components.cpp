@@ -63,11 +63,12 @@ void run(const ComponentsArguments& arguments, Session& session) {
         arguments.largest ? (sizes.empty() ? 1 : sizes.front().voxels) : arguments.least;
     Svdag dag =
         keep_components(file.view(), least, arguments.neighbours, {&memory, &session.progress});
-    const bool quiet = session.quiet;
-    session.quiet = quiet || session.json;
+    const CommandState asked = session;
+    session.quiet = asked.quiet || asked.json;
+    session.json = false;
     write_edited(edit, std::move(dag), file.grid(), file,
                  fmt::format("components of {} voxels or more", least), memory, session);
-    session.quiet = quiet;
+    static_cast<CommandState&>(session) = asked;
   }
   session.bar.clear();
   if (session.json || !session.quiet)

@@ -1,16 +1,13 @@
 #include "edit/edited_file.hpp"
 
-#include <fmt/core.h>
-
-#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
 #include "cli/parse.hpp"
+#include "cli/written_files.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/with_home.hpp"
 #include "voxdag/file/model/edited.hpp"
-#include "voxdag/file/report/human.hpp"
 
 namespace voxdag::cli {
 
@@ -25,6 +22,7 @@ void add_edit_options(const Command& command, EditArguments& arguments, Session&
                "without it");
   add_memory_option(command, arguments.memory_limit);
   add_threads_option(command, session);
+  add_json_option(command, session);
   add_quiet_option(command, session);
 }
 
@@ -72,14 +70,9 @@ void write_edited(const EditArguments& arguments, DagModel model, bool compact,
   model.set_presentation(with_home(model.metadata().presentation, model.view(), model.grid()));
   model.save(arguments.output, compact, {&memory, &session.progress});
   const std::uint64_t voxels = model.metadata().counts.voxels;
-  session.bar.clear();
   warn_if_empty(voxels, arguments.output, session);
-  if (session.quiet) return;
-  std::error_code unknown;
-  const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
-  fmt::print("{}: {} voxels, {}, {} form\n", arguments.output, with_commas(voxels),
-             human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
-             compact ? "compact" : "plain");
+  print_written({{arguments.output}, {{"voxels", voxels}}, compact ? "compact form" : "plain form"},
+                session);
 }
 
 }  // namespace voxdag::cli

@@ -16,8 +16,8 @@ struct EditArguments {
   std::uint64_t memory_limit = 0;
 };
 
-/// Adds --output, --compact, --plain, --drop-attributes, --memory, --threads and --quiet. They
-/// belong to `arguments`.
+/// Adds --output, --compact, --plain, --drop-attributes, --memory, --threads, --json and
+/// --quiet. They belong to `arguments`.
 void add_edit_options(const Command& command, EditArguments& arguments, Session& session);
 
 /// Adds --output, --compact and --plain for a command whose output is optional: `help` says what it

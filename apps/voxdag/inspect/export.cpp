@@ -11,10 +11,13 @@
 #include "cli/look_input.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
+#include "cli/scene_input.hpp"
+#include "cli/written_files.hpp"
 #include "view/export_page.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/formats/exports/count_voxels.hpp"
 #include "voxdag/formats/exports/export_scene.hpp"
 #include "voxdag/formats/exports/grids/export_slices.hpp"
 
@@ -22,6 +25,7 @@ namespace voxdag::cli {
 namespace {
 
 struct ExportArguments {
+  SceneInput input;
   std::string output, look;
   bool grey = false, watertight = false, manifold = false, merge = false;
   ExportOptions options;
@@ -81,16 +85,28 @@ void export_file(ExportArguments& arguments, Session& session) {
   std::vector<std::string> notes;
   arguments.options.notes = &notes;
   if (!arguments.grey) arguments.options.look = look_of(look ? *look : file);
-  if (arguments.slices)
-    return export_slices(arguments.output, *arguments.slices, voxels, file.grid(),
-                         arguments.options);
-  const std::vector<std::filesystem::path> files =
-      export_scene(arguments.output, voxels, file.metadata(), arguments.content, arguments.options,
-                   {&memory, &session.progress});
-  session.bar.clear();
+  std::uint64_t faces = 0;
+  arguments.options.faces_written = &faces;
+  WrittenFiles written;
+  if (arguments.slices) {
+    export_slices(arguments.output, *arguments.slices, voxels, file.grid(), arguments.options);
+    written.files = {arguments.output};
+  } else {
+    for (const std::filesystem::path& part :
+         export_scene(arguments.output, voxels, file.metadata(), arguments.content,
+                      arguments.options, {&memory, &session.progress}))
+      written.files.push_back(part.string());
+  }
+  const auto side = static_cast<std::int32_t>(file.grid().resolution());
+  const Box3i window = arguments.options.window.value_or(Box3i{{0, 0, 0}, {side, side, side}});
+  constexpr std::uint64_t kAll = ~std::uint64_t{0} - 1;
+  written.counts = {{"voxels", count_voxels(voxels, window, kAll, [&session] {
+                       session.progress.throw_if_cancelled();
+                     })}};
+  if (faces > 0)
+    written.counts.emplace_back(arguments.content.ply_faces ? "faces" : "triangles", faces);
   print_warnings(notes, session);
-  if (files.size() == 1 || session.quiet) return;
-  for (const std::filesystem::path& part : files) fmt::print("{}\n", part.string());
+  print_written(written, session);
 }
 
 void add_page_options(const Command& command, ExportArguments& arguments) {
@@ -175,7 +191,8 @@ void add_export_command(const Command& program, Session& session) {
       "  voxdag export scene.vdag -o part.raw --window 0,0,0,512,512,512\n"
       "  voxdag export solid.vdag -o layers/ --slices z\n"
       "  voxdag export scene.vdag -o scene.html\n"
-      "  voxdag export scene.vdag -o site/\n\n"
+      "  voxdag export scene.vdag -o site/\n"
+      "  voxdag export bunny.ply -r 256 -o bunny.vox\n\n"
       "An ESVO exports its voxels of the finest level. The outputs have the colours of the file, "
       "or of --look, as far as their formats can. Formats that cannot hold a place in the world "
       "come with OUT.json, which has it.\n\n"
@@ -186,7 +203,8 @@ void add_export_command(const Command& program, Session& session) {
       "A folder that exists is replaced as a whole, and only if it has no files but those of an "
       "older page. It stays if the export fails. `kill -9`, or a second Ctrl-C, can leave the "
       "unfinished folder OUT.voxdag-PID-N.");
-  command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
+  arguments->input.with_colors = true;
+  add_scene_input(command, arguments->input, session, "The .vdag or .esvo file");
   command
       .text("-o,--output", arguments->output, "OUT",
             "Outer faces: .glb, .obj, .stl, or .ply with --faces. Points: .ply. Voxels: .vox "
@@ -227,11 +245,14 @@ void add_export_command(const Command& program, Session& session) {
       .not_with(look);
   add_mesh_options(command, *arguments);
   add_page_options(command, *arguments);
+  add_json_option(command, session);
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
     session.inputs = {arguments->look};
     check_outputs(*arguments, session);
-    session.work = [arguments, &session] { export_file(*arguments, session); };
+    session.work = [arguments, &session] {
+      work_on_scene(arguments->input, session, [&] { export_file(*arguments, session); });
+    };
   });
 }
 

@@ -13,6 +13,7 @@
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
+#include "cli/scene_input.hpp"
 #include "cli/usage_error.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/algebra/query/containing_voxel.hpp"
@@ -36,6 +37,7 @@ namespace voxdag::cli {
 namespace {
 
 struct QueryArguments {
+  SceneInput input;
   std::string points, segments, output;
   bool count = false, distances = false, is_signed = false, area = false, from_low = false;
   std::optional<int> heights;  ///< Axis.
@@ -206,7 +208,7 @@ void print_count(const QueryArguments& arguments, const DagModel& file, MemoryBu
   if (session.json)
     fmt::print("{}", json_text(nlohmann::ordered_json{{"voxels", voxels}}));
   else
-    fmt::print("{}: {} voxels\n", session.subject, with_commas(voxels));
+    fmt::print("{}: {} voxels\n", session.named(session.subject), with_commas(voxels));
 }
 
 void print_area(const DagModel& file, MemoryBudget& memory, Session& session) {
@@ -232,8 +234,9 @@ void print_area(const DagModel& file, MemoryBudget& memory, Session& session) {
         "{}: {} voxels, volume {:.9g}; {} faces, area {:.9g}\n"
         "  centre of mass {:.9g}, {:.9g}, {:.9g}; bounds {:.9g}, {:.9g}, {:.9g} to {:.9g}, {:.9g}, "
         "{:.9g}\n",
-        session.subject, with_commas(surface.voxels), volume, with_commas(surface.all_faces()),
-        area, centre.x, centre.y, centre.z, lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
+        session.named(session.subject), with_commas(surface.voxels), volume,
+        with_commas(surface.all_faces()), area, centre.x, centre.y, centre.z, lo.x, lo.y, lo.z,
+        hi.x, hi.y, hi.z);
   }
 }
 
@@ -275,11 +278,12 @@ void add_query_command(const Command& program, Session& session) {
                   "  voxdag query scene.vdag --heights y -o heights.npy\n"
                   "  voxdag query scene.vdag --count --window "
                   "0,0,0,4096,4096,4096\n"
-                  "  voxdag query scene.vdag --area\n\n"
+                  "  voxdag query scene.vdag --area\n"
+                  "  voxdag query part.stl --area -r 512\n\n"
                   "Each call answers one kind of question. All answers are "
                   "exact. Distances are computed in double precision and rounded "
                   "to float32.");
-  command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
+  add_scene_input(command, arguments->input, session, "The .vdag file, in either form");
   std::vector<Option> kinds;
   const auto add = [&kinds](Option option) {
     for (const Option& other : kinds) option.not_with(other);
@@ -327,7 +331,9 @@ void add_query_command(const Command& program, Session& session) {
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
     check_query_arguments(*arguments, session);
-    session.work = [arguments, &session] { query(*arguments, session); };
+    session.work = [arguments, &session] {
+      work_on_scene(arguments->input, session, [&] { query(*arguments, session); });
+    };
   });
 }
 

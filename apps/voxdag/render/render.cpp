@@ -80,6 +80,7 @@ void add_render_command(const Command& program, Session& session) {
       "depth=z.exr\n"
       "  voxdag render scene.vdag -o lamp.png --no-sun --sky 0.1 --light sphere:0,3,0,0.2\n"
       "  voxdag render scene.vdag --mesh scene.obj -o triangles.png\n"
+      "  voxdag render helmet.gltf -r 2048 -o helmet.png\n"
       "  voxdag render scene.vdag --path flight.json -o frame_%04d.png\n\n"
       "The command chooses each value that you do not give so that the picture shows the "
       "scene well. It prints the view and the exposure as options that give the same "
@@ -88,7 +89,9 @@ void add_render_command(const Command& program, Session& session) {
   add_render_options(command, session, *arguments);
   command.when_parsed([arguments, &session] {
     check_render_arguments(*arguments, session);
-    session.work = [arguments, &session] { render(*arguments, session); };
+    session.work = [arguments, &session] {
+      work_on_scene(arguments->input, session, [&] { render(*arguments, session); });
+    };
   });
 }
 

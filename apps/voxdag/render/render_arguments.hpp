@@ -7,6 +7,7 @@
 
 #include "cli/device.hpp"
 #include "cli/mesh_input.hpp"
+#include "cli/scene_input.hpp"
 #include "voxdag/image/image_size.hpp"
 #include "voxdag/render/film/picture_pass.hpp"
 #include "voxdag/render/render_options.hpp"
@@ -41,6 +42,7 @@ struct ViewFileArguments {
 };
 
 struct RenderArguments {
+  SceneInput input;
   std::string output, depth, normal;
   ViewFileArguments view;
   std::string look;                 ///< The file of --look; empty: none.

@@ -285,7 +285,8 @@ void add_render_options(const Command& command, Session& session, RenderArgument
   RenderOptions& options = arguments.options;
   options.samples_per_pixel = 4;
   options.ground = true;
-  command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
+  arguments.input.with_colors = true;
+  add_scene_input(command, arguments.input, session, "The .vdag or .esvo file");
   command
       .text("-o,--output", arguments.output, "OUT",
             "The picture to write: .png, or .exr for linear light")

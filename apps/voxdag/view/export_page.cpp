@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "cli/output_files.hpp"
+#include "cli/written_files.hpp"
 #include "viewer/site/export_site.hpp"
 #include "voxdag/file/report/human.hpp"
 
@@ -41,10 +42,10 @@ void export_page(const std::string& output, const ShownSceneArguments& arguments
   const std::uint64_t bytes = is_single_file(output)
                                   ? export_single_page(output, scene.bytes(), &session.progress)
                                   : export_site(output, scene.bytes(), &session.progress);
-  session.bar.clear();
-  if (!session.quiet)
-    fmt::print("{}: {} (the scene: {})\n", output, human_bytes(bytes),
-               human_bytes(scene.bytes().size()));
+  print_written({{output},
+                 {{"voxels", scene.voxels()}},
+                 "the scene alone " + human_bytes(scene.bytes().size())},
+                session);
   if (is_single_file(output) && bytes > kHandyPageBytes)
     print_warnings(
         {fmt::format("{}: has {}, which browsers open slowly: use --levels to make it smaller, or "

@@ -29,6 +29,8 @@ class ShownScene {
                          AttributeForm form, Session& session);
 
   const SceneBytes& bytes() const { return *bytes_; }
+  /// Returns the number of voxels of a scene from read().
+  std::uint64_t voxels() const { return dag_->metadata().counts.voxels; }
 
  private:
   std::unique_ptr<MemoryBudget> memory_;  // The members below count their memory here.

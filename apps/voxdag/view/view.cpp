@@ -3,6 +3,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
+#include "cli/scene_input.hpp"
 #include "view/serve_scene.hpp"
 #include "view/shown_scene.hpp"
 
@@ -10,12 +11,12 @@ namespace voxdag::cli {
 namespace {
 
 struct ViewArguments {
+  SceneInput input;
   ShownSceneArguments scene;
   ServeArguments serve;
 };
 
 void view(const ViewArguments& arguments, Session& session) {
-  require_page_server();
   const ShownScene scene = ShownScene::open(session.subject, arguments.scene, session);
   serve_scene(scene.bytes(), arguments.serve, session);
 }
@@ -27,14 +28,17 @@ void add_view_command(const Command& program, Session& session) {
   const Command command = program.add(
       "view", "Show a DAG in the browser",
       "voxdag view scene.vdag\n"
-      "  voxdag view scene.vdag --port 8080 --no-open\n\n"
+      "  voxdag view scene.vdag --port 8080 --no-open\n"
+      "  voxdag view castle.vox\n"
+      "  voxdag view sponza.obj -r 4096 --keep sponza.vdag\n\n"
       "Starts a server, prints the address of the page as one line on stdout, and opens "
       "it with xdg-open if there is a display (DISPLAY or WAYLAND_DISPLAY). Ctrl-C ends "
       "the server at once.\n\n"
       "A plain file of any size is served within a second: files of up to 32 MiB are "
       "checked completely, larger ones in their header, chunk table and metadata. A "
       "compact file is decoded first. An ESVO is refused.");
-  command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
+  arguments->input.with_colors = true;
+  add_scene_input(command, arguments->input, session, "The .vdag file, in either form");
   command.number("--port", arguments->serve.port, NumberRange::whole(0, 65535), "N",
                  "Port of the server; 0: any free one");
   command.text("--listen", arguments->serve.address, "ADDRESS",
@@ -47,7 +51,10 @@ void add_view_command(const Command& program, Session& session) {
                  "quarters of the available memory)");
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
-    session.work = [arguments, &session] { view(*arguments, session); };
+    session.work = [arguments, &session] {
+      require_page_server();
+      work_on_scene(arguments->input, session, [&] { view(*arguments, session); });
+    };
   });
 }
 

@@ -49,6 +49,8 @@ struct ExportOptions {
   /// show no colours of corners. OBJ files get PATH.mtl and PATH.png, with their extension
   /// replaced.
   bool texture = false;
+  /// If not null: receives the number of triangles of .glb, .obj and .stl, or of faces of .ply.
+  std::uint64_t* faces_written = nullptr;
   /// If not null: receives lines for the user about the output.
   std::vector<std::string>* notes = nullptr;
   /// The greatest size of a dense array, in bytes; larger ones are refused before anything is

@@ -52,6 +52,7 @@ class PlyFile {
   }
 
   std::uint64_t vertices() const { return vertices_; }
+  std::uint64_t faces() const { return faces_; }
 
   void commit() {
     const std::string unpadded = header(vertices_, faces_, "");
@@ -253,6 +254,7 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
     });
     first_vertex = next;
   });
+  if (options.faces_written != nullptr) *options.faces_written = file.faces();
   file.commit();
 }
 

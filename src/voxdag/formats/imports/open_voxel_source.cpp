@@ -113,6 +113,12 @@ std::unique_ptr<VoxelSource> open_input_file(const Path& path, const Options& op
 
 }  // namespace
 
+bool is_voxel_source(const Path& name) {
+  const std::string unpacked = lower_case(unpacked_name(name).string());
+  return std::any_of(std::begin(kSourceFormats), std::end(kSourceFormats),
+                     [&](const SourceFormat& format) { return unpacked.ends_with(format.ending); });
+}
+
 std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& options) {
   std::unique_ptr<VoxelSource> source = open_input_file(path, options);
   return options.use_placement ? with_file_placement(path, std::move(source)) : std::move(source);

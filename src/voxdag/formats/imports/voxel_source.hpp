@@ -72,6 +72,10 @@ struct VoxelSourceOptions {
   Work work = {};         ///< Its budget counts what is unpacked.
 };
 
+/// Returns whether open_voxel_source() knows the end of the name. Files that end in .ply hold
+/// points or a mesh.
+bool is_voxel_source(const std::filesystem::path& name);
+
 /// Opens a file by the end of its name, or a folder of PNG files. Files that gzip or Zstandard have
 /// compressed and pipes are unpacked first (InputFile). Throws Error for formats that are
 /// not known, and for options that the format does not have.

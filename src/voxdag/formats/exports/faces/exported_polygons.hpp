@@ -49,7 +49,12 @@ class ExportedPolygons {
 
  private:
   void walk(double end, const std::function<void(const FacePolygon&)>& fn) {
-    std::uint64_t done = 0;
+    std::uint64_t done = 0, triangles = 0;
+    const auto visit = [&](const FacePolygon& polygon) {
+      ++done;
+      triangles += polygon.triangles.size();
+      fn(polygon);
+    };
     const auto progress = [&](double fraction) {
       if (options_.progress) options_.progress(done_ + fraction * (end - done_), done);
     };
@@ -60,21 +65,17 @@ class ExportedPolygons {
       const double count = static_cast<double>(std::max<std::uint64_t>(*voxel_count_, 1));
       for_each_manifold_face(
           voxels_, window_, colors_,
-          [&](std::uint64_t voxels) { progress(static_cast<double>(voxels) / count); },
-          [&](const FacePolygon& polygon) {
-            ++done;
-            fn(polygon);
-          });
+          [&](std::uint64_t voxels) { progress(static_cast<double>(voxels) / count); }, visit);
     } else {
       FacePolygon polygon;
       const bool cut = merge_ && options_.faces == FaceMesh::kWatertight;
       for_each_rectangle(
           voxels_, window_, colors_, merge_, progress, [&](const FaceRectangle& rectangle) {
-            ++done;
             cut ? set_cut_rectangle(rectangle, polygon) : set_rectangle(rectangle, polygon);
-            fn(polygon);
+            visit(polygon);
           });
     }
+    if (options_.faces_written != nullptr) *options_.faces_written = triangles;
     done_ = end;
   }
 

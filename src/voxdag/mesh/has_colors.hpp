@@ -1,0 +1,21 @@
+#pragma once
+/// Tells whether a mesh file describes colours.
+#include <algorithm>
+
+#include "voxdag/mesh/appearance.hpp"
+
+namespace voxdag {
+
+/// Returns whether corners have colours, or a material has a texture, an emission, or another
+/// colour than white and kDefaultColor.
+inline bool has_colors(const Appearance& appearance) {
+  const auto is_colored = [](const Material& material) {
+    const Vec3f color = material.base_color;
+    return material.color_map.exists() || material.emission_map.exists() ||
+           material.emission != Vec3f{} || (color != Vec3f{1, 1, 1} && color != kDefaultColor);
+  };
+  return !appearance.colors.empty() ||
+         std::any_of(appearance.materials.begin(), appearance.materials.end(), is_colored);
+}
+
+}  // namespace voxdag
