@@ -113,25 +113,26 @@ MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension
 FormatCustom mesh_custom(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string ending = lower_case(
       options.format.empty() ? unpacked_name(path).extension().string() : "." + options.format);
-  if (!ending.empty() && ending != ".dae" && ending != ".fbx") return custom_of(ending);
+  if (!ending.empty() && ending != ".dae" && ending != ".fbx")
+    return custom_of("", ending.substr(1));
   const InputFile input(path, options.work);
   const MappedFile file(input.path(), MappedFile::Access::kSequential);
   const MeshSource source{file.text(), path.string(), path.parent_path(), &file, options};
   if (ending == ".fbx") return fbx_custom(source.bytes);
   switch (detect_mesh_format(source.bytes, ending)) {
     case MeshFormat::kGltf:
-      return custom_of(".glb");
+      return custom_of("", "glb");
     case MeshFormat::kStl:
-      return custom_of(".stl");
+      return custom_of("", "stl");
     case MeshFormat::k3mf:
-      return custom_of(".3mf");
+      return custom_of("", "3mf");
     case MeshFormat::kCollada: {
-      FormatCustom custom = custom_of(".dae");
+      FormatCustom custom = custom_of("", "dae");
       custom.up = collada_up_axis(source);
       return custom;
     }
     default:
-      return custom_of(".obj");
+      return custom_of("", "obj");
   }
 }
 
