@@ -19,7 +19,7 @@ Svdag cube() {
 }
 constexpr double kFloor = -0.75;  // world height of the cube's lower side
 
-RenderOptions from_above() {
+RenderOptions ground_from_above() {
   RenderOptions options;
   options.width = 96;
   options.height = 80;
@@ -51,7 +51,7 @@ bool meets_cube(Vec3d from, Vec3d direction, double more) {
 
 TEST(Ground, ShowsTheExactShadowOfACube) {
   const Svdag dag = cube();
-  RenderOptions options = from_above();
+  RenderOptions options = ground_from_above();
   const RenderedImage image = render_image(dag.view(), test_grid(5), options);
   const Camera camera = make_camera(image.view, options.width, options.height);
   const Vec3d sun = normalized(*options.sun);
@@ -84,7 +84,7 @@ TEST(Ground, ShowsTheExactShadowOfACube) {
 
 TEST(Ground, IsNotInASection) {
   const Svdag dag = cube();
-  RenderOptions options = from_above();
+  RenderOptions options = ground_from_above();
   options.section.box = Box3d{{-1, -1, -1}, {1, 1, 1}};
   const RenderedImage image = render_image(dag.view(), test_grid(5), options);
   for (std::size_t at = 0; at < image.depth.size(); ++at)
@@ -93,7 +93,7 @@ TEST(Ground, IsNotInASection) {
 
 TEST(Background, HasOneColourAndATransparentOneLeavesTheSurfacesAsTheyAre) {
   const Svdag dag = cube();
-  RenderOptions options = from_above();
+  RenderOptions options = ground_from_above();
   options.ground = false;
   options.samples_per_pixel = 4;
   options.background = Background::kTransparent;
@@ -115,14 +115,16 @@ TEST(Background, HasOneColourAndATransparentOneLeavesTheSurfacesAsTheyAre) {
 
 TEST(Background, TheSkyHasItsOwnExposure) {
   const Svdag dag = cube();
-  RenderOptions options = from_above();
+  RenderOptions options = ground_from_above();
   options.ground = false;
   options.exposure = 0.2f;
   const RenderedImage dark = render_image(dag.view(), test_grid(5), options);
   options.exposure = 5;
   const RenderedImage bright = render_image(dag.view(), test_grid(5), options);
   for (std::size_t at = 0; at < dark.rgb.size(); ++at)
-    if (!std::isfinite(dark.depth[at])) EXPECT_EQ(dark.rgb[at], bright.rgb[at]);
+    if (!std::isfinite(dark.depth[at])) {
+      EXPECT_EQ(dark.rgb[at], bright.rgb[at]);
+    }
 }
 
 TEST(LowestVoxel, IsThatOfAllVoxels) {

@@ -33,7 +33,8 @@ TEST(ToneMap, NeutralOnlySubtractsTheFloorFromColoursThatAreNotBright) {
   EXPECT_FLOAT_EQ(rgb.x, 0.66f);
   EXPECT_FLOAT_EQ(rgb.y, 0.26f);
   EXPECT_FLOAT_EQ(rgb.z, 0.06f);
-  EXPECT_FLOAT_EQ(tone_map(ToneMap::kNeutral, grey(ExposureRule::kMiddle)).x, 0.18f);
+  EXPECT_FLOAT_EQ(tone_map(ToneMap::kNeutral, grey(static_cast<float>(ExposureRule::kMiddle))).x,
+                  0.18f);
 }
 
 TEST(ToneMap, NeutralKeepsTheHueOfBrightColoursAndFilmicDoesNot) {
