@@ -37,7 +37,7 @@ TEST_F(View, ServesTheSceneInThePlainForm) {
 }
 
 TEST_F(View, ServesTheDagOfAMesh) {
-  Process program(voxdag_command({"view", mesh_, "-r", "64", "--no-open"}));
+  Process program(voxdag_command({"view", mesh_, "-r", "256", "--no-open"}));
   const int port = port_of(program);
   ASSERT_NE(port, 0);
   EXPECT_EQ(get(port, "/scene.vdag").body, read_text(plain_));
