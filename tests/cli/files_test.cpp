@@ -34,14 +34,13 @@ class Files : public Sponge {
 };
 
 TEST_F(Files, FilesThatTheMeshNamesAreNotOverwritten) {
-  write_text(path("a.obj"), "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
-  write_text(path("a.mtl"), "newmtl m\nmap_Kd a.png\n");
+  write_text(path("a.obj"), "mtllib a.esvo\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+  write_text(path("a.esvo"), "newmtl m\nmap_Kd a.png\n");
   write_text(path("a.png"), "no picture");
-  for (const char* named : {"a.mtl", "a.png"}) {
+  for (const char* named : {"a.esvo", "a.png"}) {
     const std::string before = read_text(path(named));
-    expect_failure(
-        run_voxdag({"build", path("a.obj"), "-r", "16", "--as", "esvo", "-o", path(named)}), 1,
-        "--output would overwrite this file, which " + path("a.obj") + " names");
+    expect_failure(run_voxdag({"build", path("a.obj"), "-r", "16", "-o", path(named)}), 1,
+                   "--output would overwrite this file, which " + path("a.obj") + " names");
     EXPECT_EQ(read_text(path(named)), before);
   }
 }

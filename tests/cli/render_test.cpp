@@ -116,7 +116,8 @@ TEST_F(RenderCommand, RefusesWhatMakesNoPicture) {
   expect_failure(run_voxdag({"render", in, "-o", out, "--eye", "1,2"}), 2, "--eye");
   expect_failure(run_voxdag({"render", in, "-o", out, "--eye", "1,1,1", "--target", "1,1,1"}), 2,
                  "--target");
-  expect_failure(run_voxdag({"render", path("sponge.ply"), "-o", out}), 1, "sponge.ply");
+  write_text(path("bad.ply"), "ply\nformat ascii 1.0\n");
+  expect_failure(run_voxdag({"render", path("bad.ply"), "-o", out}), 1, "bad.ply");
   expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "depth"}), 2, "NAME=FILE");
   expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "albedo=a.png"}), 2, "not one of");
   expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "depth=z.tif"}), 2, ".png or .exr");

@@ -83,7 +83,7 @@ TEST(Usage, AnUnknownCommandIsNamedWithTheNearestOne) {
 
 TEST(Usage, UnknownArgumentsAreNamedInTheirOrderWithTheNearestOptions) {
   expect_failure(run_voxdag({"info", "a.vdag", "--jsno", "b.vdag", "--xyzzy=3"}), 2,
-                 "unknown arguments: --jsno (did you mean --json?), b.vdag, --xyzzy=3");
+                 "unknown arguments: --jsno (did you mean --json?), b.vdag, --xyzzy (usage");
   expect_failure(run_voxdag({"build", "a.obj", "--resolutoin", "64"}), 2,
                  "unknown argument: --resolutoin (did you mean --resolution?)");
   expect_failure(run_voxdag({"build", "--method"}), 2, "--method");

@@ -36,6 +36,15 @@ TEST_F(View, ServesTheSceneInThePlainForm) {
   }
 }
 
+TEST_F(View, ServesTheDagOfAMesh) {
+  Process program(voxdag_command({"view", mesh_, "-r", "256", "--no-open"}));
+  const int port = port_of(program);
+  ASSERT_NE(port, 0);
+  EXPECT_EQ(get(port, "/scene.vdag").body, read_text(plain_));
+  program.send_signal(SIGTERM);
+  EXPECT_EQ(program.wait().status, 128 + SIGTERM);
+}
+
 TEST_F(View, ASignalEndsItWhileAClientIsConnected) {
   Process program(voxdag_command({"view", plain_, "--no-open", "-q"}));
   HttpClient client(port_of(program));
@@ -91,7 +100,8 @@ TEST_F(View, AFileItCannotShowIsRefusedBeforeItListens) {
   ASSERT_EQ(run_voxdag({"build", mesh_, "-r", "64", "-o", esvo, "--quiet"}).status, 0);
   expect_failure(run_voxdag({"view", broken}), 1, broken + ": chunk ");
   expect_failure(run_voxdag({"view", dir_ / "none.vdag"}), 1, "cannot open");
-  expect_failure(run_voxdag({"view", mesh_}), 1, "not a .vdag file");
+  write_text(dir_ / "text", "no scene");
+  expect_failure(run_voxdag({"view", dir_ / "text"}), 1, "not a .vdag file");
   expect_failure(run_voxdag({"view", esvo}), 1, "is an ESVO, which the viewer cannot show");
 }
 

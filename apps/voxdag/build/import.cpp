@@ -215,8 +215,8 @@ void add_import_command(const Command& program, Session& session) {
     check_distinct({{"--output", arguments->output}}, session);
     if (arguments->output.ends_with(".esvo"))
       throw UsageError("--output", "ends in .esvo, and import makes DAGs");
-    if (session.json && maker_of(arguments->output) == "render")
-      throw UsageError("--json", "has no effect on a picture");
+    const std::string maker = maker_of(arguments->output);
+    if (session.json && maker == "render") throw UsageError("--json", "has no effect on a picture");
     session.work = [arguments, &session] {
       const std::string output = arguments->output;
       build_output(output, session, [&](const std::string& file) {

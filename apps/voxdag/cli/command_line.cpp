@@ -137,12 +137,15 @@ std::string reason_of(const CLI::App& app, const CLI::ParseError& error) {
 std::vector<std::string> usual_arguments(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (words.empty()) return {"--help"};
+  const std::vector<std::string> commands = command_names(app);
+  const auto is_command = [&](const std::string& word) {
+    return std::find(commands.begin(), commands.end(), word) != commands.end();
+  };
   if (words[0] == "help") {
     words.erase(words.begin());
-    words.push_back("--help");
+    if (words.empty() || is_command(words[0])) words.push_back("--help");
   }
-  const std::vector<std::string> commands = command_names(app);
-  if (std::find(commands.begin(), commands.end(), words[0]) == commands.end()) return words;
+  if (!is_command(words[0])) return words;
   const std::vector<std::string> options = option_names(*app.get_subcommand(words[0]));
   const auto is_known = [&](const std::string& name) {
     return std::find(options.begin(), options.end(), name) != options.end();

@@ -37,8 +37,9 @@ bool is_ply_of_points(const std::string& file) {
 std::string builder_of(const std::string& file) {
   std::error_code unknown;
   const std::string ending = lower_case(unpacked_name(file).extension().string());
-  if (!std::filesystem::is_regular_file(file, unknown) || is_container(file) || ending.empty() ||
-      ending == ".vdag" || ending == ".esvo")
+  // DAGs and ESVOs are opened once, by the command: only files of other endings are looked at here.
+  if (ending.empty() || ending == ".vdag" || ending == ".esvo" ||
+      !std::filesystem::is_regular_file(file, unknown) || is_container(file))
     return "";
   const bool is_imported = ending == ".ply" ? is_ply_of_points(file) : is_voxel_source(file);
   return is_imported ? "import" : "build";
