@@ -177,13 +177,19 @@ TEST(RenderImage, EachKindOfFilterIsThatOfTheUnfilteredPicture) {
   for (const FilterKind kind : {FilterKind::kNaive, FilterKind::kPlain, FilterKind::kGuided}) {
     options.filter = kind;
     const RenderedImage image = render_image(dag.view(), picture_grid(), options);
-    FilterInput input{unfiltered.radiance.data(), image.cell_pixels.data(), image.width,
-                      image.height};
+    std::vector<Vec3f> surfaces = unfiltered.radiance;
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+      if (image.coverage[i] == 0) surfaces[i] = {};
+    FilterInput input{surfaces.data(), image.cell_pixels.data(), image.width, image.height};
+    input.coverage = image.coverage.data();
     if (kind == FilterKind::kGuided)
       input.guides = {image.depth.data(), image.normal.data(), image.occlusion.data(),
                       image.shadow.data(), make_camera(image.view, image.width, image.height)};
     input.shrinks = kind != FilterKind::kNaive;
-    EXPECT_EQ(image.radiance, filter_picture(input));
+    std::vector<Vec3f> expected = filter_picture(input);
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+      if (image.coverage[i] == 0) expected[i] = unfiltered.radiance[i];
+    EXPECT_EQ(image.radiance, expected);
     for (const std::vector<Vec3f>& other : pictures) EXPECT_NE(image.radiance, other);
     pictures.push_back(image.radiance);
   }

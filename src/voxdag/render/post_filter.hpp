@@ -54,6 +54,8 @@ struct FilterInput {
   int width = 0, height = 0;
   FilterGuides guides{};
   bool shrinks = true;  ///< The disc shrinks to the sizes of the voxels that it covers.
+  /// See ImageBuffers: `color` holds the light of surfaces alone, times this. Null: 1 everywhere.
+  const float* coverage = nullptr;
 };
 
 /// Returns a picture's buffers, for a filter of this kind. `image` must have all buffers but the
@@ -64,6 +66,7 @@ VOXDAG_HD inline FilterInput filter_input(const ImageBuffers& image, const Camer
   if (kind == FilterKind::kGuided)
     input.guides = {image.depth, image.normal, image.occlusion, image.shadow, camera};
   input.shrinks = kind != FilterKind::kNaive;
+  input.coverage = image.coverage;
   return input;
 }
 
@@ -104,8 +107,8 @@ class SameSurface {
   double plane_ = 0, tolerance_ = 0;  ///< Distance of the surface's plane from the eye.
 };
 
-/// Returns the filtered colour of a pixel. `samples` is a FilterTable's data. Ignores samples
-/// outside the picture.
+/// Returns the filtered colour of a pixel, times its coverage. `samples` is a FilterTable's data.
+/// Ignores samples outside the picture and those without a voxel.
 VOXDAG_HD inline Vec3f filtered_color(const FilterInput& input, const FilterSample* samples,
                                       int pixel_x, int pixel_y) {
   const auto index = [&input](int x, int y) {
@@ -140,10 +143,12 @@ VOXDAG_HD inline Vec3f filtered_color(const FilterInput& input, const FilterSamp
     const float taper = radius - sample.distance;
     const float weight = sample.weight * (taper < 1.0f ? taper : 1.0f);
     if (alike >= kFewest && !same.has(x, y, at)) continue;
+    if (input.coverage != nullptr && input.cell_pixels[at] == 0) continue;
     sum = sum + input.color[at] * weight;
-    weight_sum += weight;
+    weight_sum += weight * (input.coverage == nullptr ? 1.0f : input.coverage[at]);
   }
-  return sum * (1.0f / weight_sum);
+  const float coverage = input.coverage == nullptr ? 1.0f : input.coverage[center];
+  return sum * (coverage / weight_sum);
 }
 
 }  // namespace voxdag
