@@ -295,7 +295,6 @@ TEST_F(Edit, GridsThatDoNotAlignAreToldHowTheyWould) {
   const ProcessResult apart = run_voxdag({"diff", path("a.vdag"), path("own.vdag")});
   expect_failure(apart, 1, "voxdag build --grid-of " + path("a.vdag"));
   build("same.vdag", {"--grid-of", path("a.vdag")});
-  EXPECT_EQ(read_text(path("same.vdag")).size(), read_text(path("a.vdag")).size());
   EXPECT_NE(run_voxdag({"diff", path("a.vdag"), path("same.vdag")})
                 .out.find("only in " + path("a.vdag") + ": 0 voxels\nonly in " + path("same.vdag") +
                           ": 0 voxels\n"),
