@@ -163,8 +163,9 @@ void add_queries(DagClass& dag) {
   dag.def_property_readonly("bounds", &bounds,
                             "The box of the voxels in world units: ((x0, y0, z0), (x1, y1, z1)); "
                             "None without voxels.")
-      .def_property_readonly("centre", &centre,
-                             "The centre of mass of the voxels in world units; None without voxels.")
+      .def_property_readonly(
+          "centre", &centre,
+          "The centre of mass of the voxels in world units; None without voxels.")
       .def_property_readonly(
           "volume",
           [](const Dag& d) {

@@ -198,7 +198,7 @@ void add_quality_options(const Command& command, RenderOptions& options, Winners
   winners.push_back(command.parsed(
       "--ground", options.ground, parse_on_off, "on|off",
       "Show the shadow of the scene on a ground under it, except in an interior, a section and "
-      "with --memory (default: on)"));
+      "of an ESVO (default: on)"));
   winners.push_back(command.parsed(
       "--background", options.background, parse_background, "sky|grey|white|black|transparent",
       "What the picture shows where nothing is; transparent writes alpha (default: sky)"));

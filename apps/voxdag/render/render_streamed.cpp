@@ -43,12 +43,10 @@ struct Streamed {
   std::optional<DeviceStream> on_device;
 };
 
-/// Returns the options of a streamed picture. The lowest voxel, on which a ground lies, may not be
-/// loaded.
+/// Returns the options of a streamed picture.
 RenderOptions streamed_options(const RenderArguments& arguments, const StreamBlocks& blocks) {
   RenderOptions options = picture_options(arguments, true);
   show_as(blocks.stream().metadata().presentation, options.view);
-  options.ground = false;
   return options;
 }
 

@@ -83,8 +83,10 @@ Sky make_sky(const Camera& camera, const View& view, const RenderOptions& option
   return sky;
 }
 
-/// Returns the ground under the voxels; none if no axis points up.
+/// Returns the ground under the voxels of a DAG; none under an ESVO, or if no axis points up.
 Ground make_ground(const VoxelSet& voxels, const Grid& grid, Vec3d up) {
+  // The lowest block of a streamed ESVO may not be loaded, and its pictures are those of the whole.
+  if (voxels.dag() == nullptr) return {};
   constexpr int kLevel = 7;
   int axis = 0;
   while (axis < 3 && up[axis] != length(up)) ++axis;

@@ -8,7 +8,7 @@ namespace {
 /// The voxels of a cell, whose corner is (0, 0, 0).
 struct CellMoments {
   std::uint64_t voxels = 0;
-  Uint128 sum[3] = {};  ///< Of the coordinates.
+  Uint128 sum[3] = {};            ///< Of the coordinates.
   Box3i bounds = Box3i::empty();  ///< hi is the last voxel.
 
   /// Adds the voxels of a part whose corner is `corner`.
