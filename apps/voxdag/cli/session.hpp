@@ -16,8 +16,8 @@ namespace voxdag::cli {
 
 class Job;
 
-/// What one command line asks for. A subcommand declares its options and sets `work`, which runs
-/// after the complete command line was checked.
+/// The state that the parser of one command line fills. A subcommand declares its options and sets
+/// `work`, which runs after the parser has checked the complete command line.
 struct CommandState {
   std::function<void()> work;
   /// Input files, which are never overwritten.

@@ -18,7 +18,7 @@ struct VdagSource {
   friend bool operator==(const VdagSource&, const VdagSource&) = default;
 };
 
-/// How a scene is to be seen and measured, as far as it is known.
+/// The up axis, the unit and the home view of a scene, as far as they are known.
 struct Presentation {
   std::optional<char> up;        ///< The axis that points up: 'x', 'y' or 'z'.
   std::string unit;              ///< Of the coordinates: mm, cm, m, in or ft; empty: not known.

@@ -1,5 +1,5 @@
 #pragma once
-/// What a format's custom says about a scene.
+/// The presentation of a scene by the custom of its input's format.
 #include "voxdag/file/scene_metadata.hpp"
 #include "voxdag/mesh/input_transform.hpp"
 

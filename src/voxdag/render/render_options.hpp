@@ -37,7 +37,8 @@ struct SectionOptions {
   std::optional<Plane> plane;
 };
 
-/// What a picture shows where nothing is. Only the sky's own colours depend on the light.
+/// The background of a picture, where it shows no surface. Only the colours of the sky depend on
+/// the light.
 inline constexpr float kGreyBackground = 0.36f;  ///< Linear light of the display.
 enum class Background { kSky, kGrey, kWhite, kBlack, kTransparent };
 
@@ -79,8 +80,8 @@ struct RenderOptions {
   float exposure = 0;  ///< Factor before tone mapping; 0: chosen to suit the picture.
   ToneMap tone = ToneMap::kNeutral;
   Background background = Background::kSky;
-  /// Shadows on a ground under the scene. Not in an interior or a section, and only if an axis is
-  /// up.
+  /// Shadows on a ground under the voxels of a DAG. Not in an interior or a section, and only if an
+  /// axis is up.
   bool ground = false;
 
   bool with_normal = true;     ///< Fill RenderedImage::normal; the guided filter does, too.

@@ -91,8 +91,8 @@ void add_mesh(const MeshSource& source, const aiMesh& part, Mesh& mesh) {
 /// Bytes that assimp may take for each byte of a file. Measured: 8 (AMF, XGL) to 24 (DXF). A file
 /// of empty XML elements needs most.
 constexpr std::uint64_t kBytesPerFileByte = 64;
-/// What a confined child may take beyond that, for compressed arrays of FBX, if the limit on memory
-/// leaves as much.
+/// Bytes that a confined child may take beyond that, for compressed arrays of FBX, if the limit on
+/// memory leaves as many.
 constexpr std::uint64_t kExtraMemory = std::uint64_t{256} << 20;
 /// Processor seconds of a confined child, and those for each MiB of the file.
 constexpr std::uint32_t kSeconds = 10, kSecondsPerMebibyte = 2;

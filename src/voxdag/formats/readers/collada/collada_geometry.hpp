@@ -28,7 +28,7 @@ class ColladaGeometries {
   /// Returns the mesh of a <geometry>; empty if it is no mesh. Throws Error, OverMemory, Cancelled.
   const ColladaGeometry& read(const XmlElement& element);
 
-  /// What is not read of the shapes, and of their appearance.
+  /// Counts the parts of the shapes, and of their appearance, that the reader leaves out.
   const LeftOut& left_out_shapes() const { return left_out_shapes_; }
   const LeftOut& left_out_looks() const { return left_out_looks_; }
 
