@@ -1,18 +1,12 @@
 #include "viewer/server/request_head.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
+
+#include "voxdag/core/lower_case.hpp"
 
 namespace voxdag {
 namespace {
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);

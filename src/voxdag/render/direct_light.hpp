@@ -109,7 +109,6 @@ template <class Nodes, class Caster, class Scratch>
 VOXDAG_HD inline int trace_light(const Nodes& nodes, const Caster& caster, const RenderSetup& setup,
                                  int index, const ViewTile& tile, Scratch& scratch) {
   constexpr int kBatch = 64;  // samples; scratch.visible has a bit for each
-  constexpr Vec3f kLuminance{0.2126f, 0.7152f, 0.0722f};
   const Light& light = setup.lights[index];
   const int samples = light.is_extended() ? setup.settings.light_samples : 1;
   const int begin = light.is_extended() ? tile.sample_index * samples : 0;
@@ -134,9 +133,9 @@ VOXDAG_HD inline int trace_light(const Nodes& nodes, const Caster& caster, const
     if (!scratch.points[pixel].is_hit()) continue;
     scratch.irradiance[pixel] =
         scratch.irradiance[pixel] + light.color * (scratch.lit[pixel] * scale);
-    const float luminance = dot(light.color, kLuminance) * scale;
-    scratch.lit_sum[pixel] += scratch.lit[pixel] * luminance;
-    scratch.unhindered_sum[pixel] += scratch.unhindered[pixel] * luminance;
+    const float bright = luminance(light.color) * scale;
+    scratch.lit_sum[pixel] += scratch.lit[pixel] * bright;
+    scratch.unhindered_sum[pixel] += scratch.unhindered[pixel] * bright;
   }
   return active * samples;
 }

@@ -56,9 +56,7 @@ VOXDAG_HD inline GridRay ray_from(const RenderSetup& setup, const ViewSample& sa
 /// without occluders.
 VOXDAG_HD inline float ground_shadow(const RenderSetup& setup, const ViewSample& sample, float open,
                                      float lit, float unhindered) {
-  constexpr float kInversePi = 0.318309886f;
-  constexpr Vec3f kLuminance{0.2126f, 0.7152f, 0.0722f};
-  const float sky = dot(sky_ambient(setup.sky, sample.normal), kLuminance) * SkyShape::kOpen;
+  const float sky = luminance(sky_ambient(setup.sky, sample.normal)) * SkyShape::kOpen;
   const float all = sky + unhindered * kInversePi;
   if (!(all > 0)) return 0;
   return sample.ground * (1 - (sky * open + lit * kInversePi) / all);

@@ -51,7 +51,6 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
       covered =
           ground_shadow(setup, sample, sky, scratch.lit_sum[pixel], scratch.unhindered_sum[pixel]);
     } else if (is_hit) {
-      constexpr float kInversePi = 0.318309886f;
       if (settings.occlusion_samples > 0)
         open = static_cast<float>(scratch.open[pixel]) /
                static_cast<float>(settings.occlusion_samples);

@@ -31,6 +31,11 @@ struct SkyShape {
   static constexpr float kFill = 0.40f, kFillFacing = 0.35f, kFillAside = 0.25f;
 };
 
+inline constexpr float kInversePi = 0.318309886f;
+
+/// Returns the luminance of a colour in linear light, with the weights of sRGB's primaries.
+VOXDAG_HD inline float luminance(Vec3f color) { return dot(color, {0.2126f, 0.7152f, 0.0722f}); }
+
 VOXDAG_HD inline Vec3f mix(Vec3f a, Vec3f b, float t) { return a * (1 - t) + b * t; }
 
 /// Returns 0 below `low`, 1 above `high`, and a smooth curve in between.

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/core/printable.hpp"
 
 namespace voxdag {
@@ -69,13 +70,6 @@ std::string_view trimmed(std::string_view text) {
   while (!text.empty() && is_nrrd_space(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_nrrd_space(text.back())) text.remove_suffix(1);
   return text;
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
 }
 
 std::vector<std::string_view> words_of(std::string_view text) {
@@ -139,7 +133,7 @@ class NrrdHeaderParser {
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos) fail(number, "has no colon");
     if (line.substr(colon).starts_with(":=")) return;
-    std::string name = lower(trimmed(line.substr(0, colon)));
+    std::string name = lower_case(trimmed(line.substr(0, colon)));
     constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
         {"datafile", "data file"}, {"lineskip", "line skip"}, {"byteskip", "byte skip"},
         {"axismins", "axis mins"}, {"axismaxs", "axis maxs"}, {"centerings", "centers"}};
@@ -181,7 +175,7 @@ class NrrdHeaderParser {
   auto named_value(const std::string& name, const Table& table) const {
     const NrrdField& field = get(name);
     for (const auto& [key, value] : table)
-      if (lower(field.value) == key) return value;
+      if (lower_case(field.value) == key) return value;
     fail(field.line, "the " + name + " " + in_quotes(field.value) + " is not supported");
   }
 
@@ -210,7 +204,7 @@ class NrrdHeaderParser {
       numbers.push_back(number_in<std::uint64_t>(sizes, word));
     std::vector<std::string> kinds;
     if (const NrrdField* field = find("kinds"))
-      for (const std::string_view word : words_of_axes(*field)) kinds.push_back(lower(word));
+      for (const std::string_view word : words_of_axes(*field)) kinds.push_back(lower_case(word));
     is_list_last_ = axes_ == 4 && !kinds.empty() && kinds[3] == "list";
     if (axes_ == 4 && (is_list_last_ || (!kinds.empty() && kinds[0] == "list"))) {
       const std::uint64_t layers = numbers[is_list_last_ ? 3 : 0];
@@ -303,7 +297,7 @@ class NrrdHeaderParser {
       const auto word = [&](const NrrdField& field) {
         return words_of_axes(field)[first_axis() + i];
       };
-      const bool is_node = centers != nullptr && lower(word(*centers)) == "node";
+      const bool is_node = centers != nullptr && lower_case(word(*centers)) == "node";
       double& step = placement.steps[i][axis];
       const auto min = number_in<double>(mins, word(mins));
       if (maxs != nullptr && find("spacings") == nullptr) {

@@ -6,6 +6,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/core/printable.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/volumes/dense_volume.hpp"
@@ -35,9 +36,7 @@ std::vector<std::string> names_of_slices(const std::filesystem::path& folder) {
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    std::string ending = name.substr(name.size() - std::min<std::size_t>(4, name.size()));
-    for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    if (ending == ".png" && name[0] != '.') names.push_back(name);
+    if (lower_case(name).ends_with(".png") && name[0] != '.') names.push_back(name);
   }
   if (error) throw Error(folder.string(), "", "cannot read the folder: " + error.message());
   if (names.empty()) throw Error(folder.string(), "", "the folder has no .png files");
