@@ -1,0 +1,65 @@
+"""Edits of DAGs, against the same edits of coordinates."""
+import warnings
+
+import numpy as np
+import pytest
+
+import voxdag
+from shapes import CUBE, CUBE_FACES, as_set, random_coords
+
+
+def test_edits_keep_colors():
+    coords = random_coords(16, 300)
+    colors = np.random.default_rng(7).integers(0, 256, coords.shape, dtype=np.uint8)
+    dag = voxdag.from_coords(coords, resolution=16, colors=colors)
+    stored = {tuple(c): tuple(v) for c, v in zip(coords.tolist(), dag.colors(coords).tolist())}
+
+    def check(edited, source_of):
+        voxels = edited.coords()
+        assert len(voxels) > 0
+        expected = [stored[tuple(source_of(v).tolist())] for v in voxels]
+        np.testing.assert_array_equal(edited.colors(voxels), expected)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check(dag.crop(((0, 0, 0), (16, 9, 16))), lambda v: v)
+        check(dag.shift((3, -2, 0), drop_outside=True), lambda v: v - (3, -2, 0))
+        check(dag.mirror("y"), lambda v: v * (1, -1, 1) + (0, 15, 0))
+        check(dag.rotate("z"), lambda v: np.array([v[1], 15 - v[0], v[2]]))
+        check(dag.keep_components(2), lambda v: v)
+        check(dag - voxdag.from_coords(coords[:50], resolution=16), lambda v: v)
+        check(dag.crop(((0, 0, 0), (16, 9, 16))) | dag.crop(((0, 5, 0), (16, 16, 16))), lambda v: v)
+        coarse = dag.coarsen(4)
+        assert coarse.info["has_colors"] and as_set(coarse.coords()) == as_set(coords // 4)
+    for edit in (lambda: dag.dilate(), lambda: dag.fill_cavities(),
+                 lambda: dag | voxdag.from_coords(coords, resolution=16)):
+        with pytest.warns(UserWarning, match="no colours"):
+            assert not edit().info["has_colors"]
+
+
+def test_operators_align_grids():
+    a = voxdag.from_coords(np.array([[1, 2, 3]]), resolution=8)
+    b = voxdag.from_coords(np.array([[1, 2, 3], [15, 0, 0]]), resolution=16)
+    assert as_set((a | b).coords()) == {(1, 2, 3), (15, 0, 0)}
+    assert as_set((b - a).coords()) == {(15, 0, 0)}
+    with pytest.raises(ValueError, match="the grids do not align"):
+        a | voxdag.build(CUBE, CUBE_FACES, resolution=8)
+
+
+def test_moves():
+    coords = random_coords(32, 90)
+    dag = voxdag.from_coords(coords, resolution=32)
+    lo, hi = (3, 0, 9), (20, 31, 32)
+    kept = coords[((coords >= lo) & (coords < hi)).all(axis=1)]
+    assert as_set(dag.crop((lo, hi)).coords()) == as_set(kept)
+    moved = coords + (5, -7, 0)
+    inside = moved[((moved >= 0) & (moved < 32)).all(axis=1)]
+    assert as_set(dag.shift((5, -7, 0), drop_outside=True).coords()) == as_set(inside)
+    with pytest.raises(ValueError, match=f"{len(moved) - len(inside)} voxels would leave the grid"):
+        dag.shift((5, -7, 0))
+    assert as_set(dag.mirror("y").coords()) == as_set(coords * (1, -1, 1) + (0, 31, 0))
+    assert as_set(dag.rotate("z").coords()) == as_set(coords[:, [1, 0, 2]] * (-1, 1, 1) + (31, 0, 0))
+    assert dag.rotate("z", -3) == dag.rotate("z") and dag.rotate("x", 4) == dag
+    coarse = dag.coarsen(8)
+    assert as_set(coarse.coords()) == as_set(coords // 4)
+    assert coarse.voxel_size == 4 * dag.voxel_size and coarse.origin == dag.origin
