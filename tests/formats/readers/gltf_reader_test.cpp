@@ -1,94 +1,18 @@
 #include "voxdag/formats/readers/gltf/gltf_reader.hpp"
 
-#include <draco/compression/encode.h>
-#include <meshoptimizer.h>
-
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "formats/readers/mesh_text.hpp"
+#include "gltf_asset.hpp"
 
 namespace voxdag {
 namespace {
 
-using Json = nlohmann::json;
-
-std::string base64(const std::string& bytes) {
-  const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += i + k > bytes.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
-  }
-  return out;
-}
-
-/// Builds an asset whose parts can be changed before it is written.
-struct Asset {
-  Json json = {{"asset", {{"version", "2.0"}}},
-               {"scene", 0},
-               {"scenes", {{{"nodes", {0}}}}},
-               {"nodes", {{{"mesh", 0}}}}};
-  std::string bytes;
-
-  /// Adds a buffer view with the values and returns its index.
-  template <class T>
-  std::size_t view(const std::vector<T>& values, std::size_t stride = 0) {
-    Json view = {
-        {"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}};
-    if (stride > 0) view["byteStride"] = stride;
-    for (const T value : values) append(bytes, value);
-    json["bufferViews"].push_back(view);
-    return json["bufferViews"].size() - 1;
-  }
-  std::size_t accessor(std::size_t view, int component, std::size_t count, const char* type) {
-    json["accessors"].push_back(
-        {{"bufferView", view}, {"componentType", component}, {"count", count}, {"type", type}});
-    return json["accessors"].size() - 1;
-  }
-  Json& primitive(Json primitive) {
-    json["meshes"][0]["primitives"].push_back(primitive);
-    return json["meshes"][0]["primitives"].back();
-  }
-
-  std::string text() const {
-    Json whole = json;
-    whole["buffers"] = {{{"byteLength", bytes.size()},
-                         {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
-    return whole.dump();
-  }
-  std::string glb() const {
-    Json whole = json;
-    whole["buffers"] = {{{"byteLength", bytes.size()}}};
-    std::string chunk = whole.dump(), out = "glTF";
-    while (chunk.size() % 4) chunk += ' ';
-    append<std::uint32_t>(out, 2);
-    append(out, static_cast<std::uint32_t>(28 + chunk.size() + bytes.size()));
-    append(out, static_cast<std::uint32_t>(chunk.size()));
-    out += "JSON" + chunk;
-    append(out, static_cast<std::uint32_t>(bytes.size()));
-    return out + std::string("BIN\0", 4) + bytes;
-  }
-};
-
-const std::vector<float> kPoints = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
-const StoredVector<Vec3f> kVertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-
-Asset square() {
-  Asset asset;
-  asset.accessor(asset.view(kPoints), 5126, 4, "VEC3");
-  asset.accessor(asset.view<std::uint16_t>({0, 1, 2, 0, 2, 3}), 5123, 6, "SCALAR");
-  asset.primitive({{"attributes", {{"POSITION", 0}}}, {"indices", 1}});
-  return asset;
-}
+using namespace gltf_test;
 
 TEST(GltfReader, IndexedTrianglesFromJsonAndBinary) {
   for (const std::string& bytes : {square().text(), square().glb()}) {
     const Mesh mesh = read_text(read_gltf, bytes);
-    EXPECT_EQ(mesh.vertices, kVertices);
+    EXPECT_EQ(mesh.vertices, kSquareVertices);
     EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
     EXPECT_TRUE(mesh.materials.empty());
   }
@@ -96,7 +20,7 @@ TEST(GltfReader, IndexedTrianglesFromJsonAndBinary) {
 
 TEST(GltfReader, EveryIndexTypeAndEveryTriangleMode) {
   Asset asset;
-  asset.accessor(asset.view(kPoints), 5126, 4, "VEC3");
+  asset.accessor(asset.view(kSquarePoints), 5126, 4, "VEC3");
   asset.accessor(asset.view<std::uint8_t>({0, 1, 2, 3}), 5121, 4, "SCALAR");
   asset.accessor(asset.view<std::uint16_t>({3, 2, 1, 0}), 5123, 4, "SCALAR");
   asset.accessor(asset.view<std::uint32_t>({1, 2, 3}), 5125, 3, "SCALAR");
@@ -113,7 +37,7 @@ TEST(GltfReader, EveryIndexTypeAndEveryTriangleMode) {
   add(0, 1);  // points and lines are ignored
   add(3, 1);
   const Mesh mesh = read_text(read_gltf, asset.text());
-  EXPECT_EQ(mesh.vertices, kVertices);  // shared by all primitives of the mesh
+  EXPECT_EQ(mesh.vertices, kSquareVertices);  // shared by all primitives of the mesh
   EXPECT_EQ(
       mesh.triangles,
       (StoredVector<Triangle>{
@@ -257,89 +181,6 @@ TEST(GltfReader, RefusalsNameTheValueAndTheReason) {
       "mesh: buffers[0]: a buffer must be in the glTF file, in a data URI or in a file beside it");
 }
 
-/// Returns the mesh with its warnings.
-MeshWithAppearance read_all(const std::string& bytes, ReadParts parts = ReadParts::kMesh) {
-  return read_gltf({bytes, "mesh", {}, nullptr, {}}, parts);
-}
-
-TEST(GltfReader, SkinsPlaceVerticesByTheirJointsInRestPoseAndIgnoreTheirNode) {
-  Asset asset = square();
-  asset.accessor(asset.view<std::uint8_t>({0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}), 5121,
-                 4, "VEC4");
-  // The third vertex is held by both joints alike, with weights whose sum is not 1.
-  asset.accessor(asset.view<float>({1, 0, 0, 0, 0, 1, 0, 0, 3, 3, 0, 0, 1, 0, 0, 0}), 5126, 4,
-                 "VEC4");
-  std::vector<float> binds;
-  for (const float x : {0.0f, -1.0f})
-    for (const float value :
-         {1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, x, 0.f, 0.f, 1.f})
-      binds.push_back(value);
-  asset.accessor(asset.view(binds), 5126, 2, "MAT4");
-  asset.json["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = 2;
-  asset.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = 3;
-  asset.json["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", 4}}};
-  asset.json["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"scale", {100, 100, 100}}},
-                         {{"translation", {0, 0, 10}}, {"children", {2}}},
-                         {{"translation", {1, 0, 10}}, {"scale", {2, 2, 2}}}};
-  asset.json["scenes"][0]["nodes"] = {0, 1};
-  // Joint 0 moves by (0, 0, 10); joint 1 maps p to (1, 0, 20) + 2 (p - (1, 0, 0)).
-  EXPECT_EQ(read_text(read_gltf, asset.text()).vertices,
-            (StoredVector<Vec3f>{{0, 0, 10}, {1, 0, 20}, {1, 1.5f, 15}, {0, 1, 10}}));
-  Asset elsewhere = asset;  // The joints are outside of the scene, then below a hidden node.
-  elsewhere.json["scenes"][0]["nodes"] = {0};
-  EXPECT_EQ(read_text(read_gltf, elsewhere.text()).vertices[1], (Vec3f{1, 0, 20}));
-  elsewhere.json["nodes"].push_back(
-      {{"children", {1}}, {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}});
-  elsewhere.json["scenes"][0]["nodes"] = {3, 0};
-  EXPECT_EQ(read_text(read_gltf, elsewhere.text()).vertices[1], (Vec3f{1, 0, 20}));
-  const auto joints = asset.json["bufferViews"][2]["byteOffset"].get<std::size_t>();
-  asset.bytes[joints + 1] = 9;  // A joint without weight may be any.
-  EXPECT_EQ(read_text(read_gltf, asset.text()).vertices[0], (Vec3f{0, 0, 10}));
-  asset.bytes[joints] = 7;
-  EXPECT_EQ(refusal(read_gltf, asset.text()),
-            "mesh: meshes[0].primitives[0]: a joint of vertex 0 does not exist: the skin has 2");
-}
-
-TEST(GltfReader, MorphTargetsMoveVerticesByTheWeightsOfTheNodeOrElseOfTheMesh) {
-  Asset asset = square();
-  asset.accessor(asset.view<float>({0, 0, 2, 0, 0, 2, 0, 0, 2, 0, 0, 2}), 5126, 4, "VEC3");
-  asset.accessor(asset.view<float>({8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}), 5126, 4, "VEC3");
-  Json& mesh = asset.json["meshes"][0];
-  mesh["primitives"][0]["targets"] = {{{"POSITION", 2}}, {{"POSITION", 3}}};
-  EXPECT_EQ(read_text(read_gltf, asset.text()).vertices, kVertices);  // without weights
-  mesh["weights"] = {0.5, 0};
-  EXPECT_EQ(read_text(read_gltf, asset.text()).vertices[0], (Vec3f{0, 0, 1}));
-  asset.json["nodes"][0]["weights"] = {0, 0.25};
-  EXPECT_EQ(read_text(read_gltf, asset.text()).vertices[0], (Vec3f{2, 0, 0}));
-}
-
-TEST(GltfReader, GpuInstancesShowTheMeshOnceEach) {
-  Asset asset = square();
-  asset.accessor(asset.view<float>({0, 0, 0, 5, 0, 0}), 5126, 2, "VEC3");
-  asset.accessor(asset.view<float>({1, 1, 1, 2, 2, 2}), 5126, 2, "VEC3");
-  asset.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
-  Json& node = asset.json["nodes"][0];
-  node["translation"] = {0, 0, 3};
-  node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", 2}, {"SCALE", 3}};
-  const Mesh mesh = read_text(read_gltf, asset.text());
-  ASSERT_EQ(mesh.vertices.size(), 8u);
-  EXPECT_EQ(mesh.vertices[2], (Vec3f{1, 1, 3}));
-  EXPECT_EQ(mesh.vertices[4 + 2], (Vec3f{7, 2, 3}));
-  asset.json["accessors"][3]["count"] = 1;
-  EXPECT_EQ(refusal(read_gltf, asset.text()),
-            "mesh: nodes[0].extensions.EXT_mesh_gpu_instancing.attributes: the attributes of "
-            "instances differ in number");
-}
-
-TEST(GltfReader, MirroredNodesTurnTrianglesOver) {
-  Asset asset = square();
-  asset.json["nodes"] = {{{"mesh", 0}, {"scale", {-1, 1, 1}}},
-                         {{"mesh", 0}, {"scale", {-1, -1, 1}}}};
-  asset.json["scenes"][0]["nodes"] = {0, 1};
-  EXPECT_EQ(read_text(read_gltf, asset.text()).triangles,
-            (StoredVector<Triangle>{{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}}));
-}
-
 TEST(GltfReader, UnknownExtensionsAreOneWarningEach) {
   Asset asset = square();
   asset.json["extensionsUsed"] = {"KHR_materials_unlit", "KHR_materials_unheard_of",
@@ -360,7 +201,7 @@ TEST(GltfReader, AWrongLengthInTheHeaderIsAWarningIfTheChunksEndWithTheFile) {
     std::string glb = square().glb();
     glb.replace(8, 4, length, 4);
     const MeshWithAppearance result = read_all(glb);
-    EXPECT_EQ(result.mesh.vertices, kVertices);
+    EXPECT_EQ(result.mesh.vertices, kSquareVertices);
     ASSERT_EQ(result.warnings.size(), 1u);
     EXPECT_NE(result.warnings[0].find("all chunks are read"), std::string::npos);
     EXPECT_NE(refusal(read_gltf, glb.substr(0, glb.size() - 1)), "no error");
@@ -384,7 +225,7 @@ TEST(GltfReader, HarmlessFaultsAreRead) {
   } while (glb[end - 1] != ' ');
   for (std::size_t at = end; glb[at - 1] == ' ';) glb[--at] = '\0';
   const MeshWithAppearance result = read_all(glb);
-  EXPECT_EQ(result.mesh.vertices, kVertices);
+  EXPECT_EQ(result.mesh.vertices, kSquareVertices);
   EXPECT_EQ(result.warnings, std::vector{std::string(
                                  "mesh: 1 matrices whose last row is nearly 0 0 0 1 are taken as "
                                  "if it was")});
@@ -393,90 +234,9 @@ TEST(GltfReader, HarmlessFaultsAreRead) {
             "mesh: nodes[0]: the last row of the matrix must be 0 0 0 1");
 }
 
-/// Replaces the bytes of a buffer view by those that meshoptimizer makes of them.
-void compress(Asset& asset, std::size_t view, const std::vector<unsigned char>& packed,
-              std::size_t count, std::size_t stride, const char* mode) {
-  Json& json = asset.json["bufferViews"][view];
-  json["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0},
-                                                   {"byteOffset", asset.bytes.size()},
-                                                   {"byteLength", packed.size()},
-                                                   {"count", count},
-                                                   {"byteStride", stride},
-                                                   {"mode", mode}};
-  asset.bytes.append(packed.begin(), packed.end());
-  for (std::size_t i = 0; i < json["byteLength"].get<std::size_t>(); ++i)
-    asset.bytes[json["byteOffset"].get<std::size_t>() + i] = '\xFF';
-}
-
-TEST(GltfReader, ViewsOfMeshoptCompression) {
-  Asset asset = square();
-  asset.json["extensionsRequired"] = {"EXT_meshopt_compression"};
-  std::vector<unsigned char> packed(meshopt_encodeVertexBufferBound(4, 12));
-  packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), kPoints.data(), 4, 12));
-  compress(asset, 0, packed, 4, 12, "ATTRIBUTES");
-  const std::vector<unsigned> indices = {0, 1, 2, 0, 2, 3};
-  packed.assign(meshopt_encodeIndexSequenceBound(6, 4), 0);
-  packed.resize(
-      meshopt_encodeIndexSequence(packed.data(), packed.size(), indices.data(), indices.size()));
-  compress(asset, 1, packed, 6, 2, "INDICES");
-  const Mesh mesh = read_text(read_gltf, asset.text());
-  EXPECT_EQ(mesh.vertices, kVertices);
-  EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
-  Asset cut = asset;
-  Json& extension = cut.json["bufferViews"][1]["extensions"]["EXT_meshopt_compression"];
-  extension["byteLength"] = 3;
-  EXPECT_EQ(refusal(read_gltf, cut.text()),
-            "mesh: bufferViews[1].extensions.EXT_meshopt_compression: the compressed bytes are "
-            "malformed");
-  extension["byteStride"] = 3;
-  EXPECT_EQ(refusal(read_gltf, cut.text()),
-            "mesh: bufferViews[1].extensions.EXT_meshopt_compression: count, stride, mode and "
-            "filter do not fit together");
-}
-
-TEST(GltfReader, PrimitivesOfDracoCompression) {
-  draco::Mesh mesh;
-  mesh.set_num_points(4);
-  mesh.SetNumFaces(2);
-  mesh.SetFace(draco::FaceIndex(0),
-               {draco::PointIndex(0), draco::PointIndex(1), draco::PointIndex(2)});
-  mesh.SetFace(draco::FaceIndex(1),
-               {draco::PointIndex(0), draco::PointIndex(2), draco::PointIndex(3)});
-  draco::GeometryAttribute positions;
-  positions.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_FLOAT32, false, 12, 0);
-  const int id = mesh.AddAttribute(positions, true, 4);
-  for (std::uint32_t p = 0; p < 4; ++p)
-    mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(p), &kPoints[3 * p]);
-  draco::EncoderBuffer buffer;
-  draco::Encoder encoder;
-  encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
-  ASSERT_TRUE(encoder.EncodeMeshToBuffer(mesh, &buffer).ok());
-
-  Asset asset;
-  asset.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
-  const auto view = asset.view(std::vector<char>(buffer.data(), buffer.data() + buffer.size()));
-  asset.json["accessors"] = {{{"componentType", 5126}, {"count", 4}, {"type", "VEC3"}},
-                             {{"componentType", 5123}, {"count", 6}, {"type", "SCALAR"}}};
-  Json extension = {{"bufferView", view},
-                    {"attributes", {{"POSITION", mesh.attribute(id)->unique_id()}}}};
-  asset.primitive({{"attributes", {{"POSITION", 0}}},
-                   {"indices", 1},
-                   {"extensions", {{"KHR_draco_mesh_compression", extension}}}});
-  const Mesh read = read_text(read_gltf, asset.text());
-  EXPECT_EQ(read.vertices, kVertices);
-  EXPECT_EQ(read.triangles, (StoredVector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
-  asset.json["accessors"][0]["count"] = 5;
-  EXPECT_EQ(refusal(read_gltf, asset.text()),
-            "mesh: accessors[0]: 48 bytes are decoded for 5 elements");
-  for (std::size_t size = 0; size < buffer.size(); ++size) {
-    asset.json["bufferViews"][0]["byteLength"] = size;
-    EXPECT_THROW(read_text(read_gltf, asset.text()), Error) << size;
-  }
-}
-
 TEST(GltfReader, TooManyInstancesAreRefusedBeforeTheyAreMade) {
   Asset asset;
-  asset.accessor(asset.view(kPoints), 5126, 4, "VEC3");
+  asset.accessor(asset.view(kSquarePoints), 5126, 4, "VEC3");
   asset.accessor(asset.view(std::vector<std::uint8_t>(60'000, 0)), 5121, 60'000, "SCALAR");
   for (int i = 0; i < 1000; ++i)
     asset.primitive({{"attributes", {{"POSITION", 0}}}, {"indices", 1}});
