@@ -1,6 +1,5 @@
 // PCD files of every kind of data, against the points that were written.
-#include <map>
-
+#include "lzf_text.hpp"
 #include "point_checks.hpp"
 #include "voxdag/formats/imports/points/lzf_stream.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
@@ -14,72 +13,6 @@ class PcdPointsTest : public PointFile {
 };
 
 const char* const kKinds[] = {"ascii", "binary", "binary_compressed"};
-
-/// Compresses with the nearest earlier three bytes that are equal.
-std::string lzf_of(const std::string& text) {
-  std::string out, plain;
-  const auto flush = [&] {
-    for (std::size_t at = 0; at < plain.size(); at += 32) {
-      const std::string part = plain.substr(at, 32);
-      out += static_cast<char>(part.size() - 1);
-      out += part;
-    }
-    plain.clear();
-  };
-  std::map<std::string, std::size_t> last;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::string key = text.substr(at, 3);
-    const auto found = last.find(key);
-    std::size_t length = 0;
-    const std::size_t back = found == last.end() ? SIZE_MAX : at - found->second;
-    if (key.size() == 3 && back <= 8192)
-      while (length < 264 && at + length < text.size() &&
-             text[at + length - back] == text[at + length])
-        ++length;
-    last[key] = at;
-    if (length < 3) {
-      plain += text[at++];
-      continue;
-    }
-    flush();
-    const std::size_t high = (back - 1) >> 8, code = length - 2;
-    out += static_cast<char>((code < 7 ? code : 7) << 5 | high);
-    if (code >= 7) out += static_cast<char>(code - 7);
-    out += static_cast<char>((back - 1) & 255);
-    at += length;
-  }
-  flush();
-  return out;
-}
-
-TEST(LzfStream, GivesTheTextBack) {
-  std::mt19937 rng(1);
-  for (const unsigned letters : {1u, 2u, 5u, 256u})
-    for (const std::size_t size : {0u, 1u, 263u, 8'193u, 300'000u}) {
-      std::string text;
-      for (std::size_t i = 0; i < size; ++i)
-        text += rng() % 50 == 0 || i < 20 ? static_cast<char>(rng() % letters)
-                                          : text[i - 1 - rng() % 19];
-      const std::string compressed = lzf_of(text);
-      LzfStream stream(compressed);
-      std::string back;
-      for (std::size_t at = 0; at < size;) {
-        const std::size_t step = std::min<std::size_t>(size - at, 1 + rng() % 9'000);
-        if (rng() % 3 == 0) {
-          stream.skip(step);
-          back += text.substr(at, step);
-        } else {
-          std::string part(step, '?');
-          stream.read(part.data(), step);
-          back += part;
-        }
-        at += step;
-      }
-      EXPECT_EQ(back, text);
-      EXPECT_THROW(stream.skip(1), Fault);
-      EXPECT_LE(size, compressed.size() * LzfStream::kMaxRatio);
-    }
-}
 
 struct Field {
   std::string name;
