@@ -4,12 +4,14 @@ import { Picture } from './picture.js';
 
 /**
  * Renders all samples of a picture, in parts between which the page can breathe. The shot's `samples`
- * tell how many there are. Throws Error if size or samples are not possible, or the graphics card is lost.
+ * tell how many there are. `progress` takes the part that is done, from 0 to 1. Throws Error if size or samples are not
+ * possible, or the graphics card is lost, and the signal's reason once it is aborted.
  * @param {import('./renderer.js').Renderer} renderer @param {import('./pacer.js').Pacer} pacer
  * @param {import('./renderer.js').Shot} shot @param {number} width @param {number} height  Pixels.
+ * @param {{signal?: AbortSignal, progress?: (part: number) => void}} [job]
  * @returns {Promise<Blob>}
  */
-export async function capture(renderer, pacer, shot, width, height) {
+export async function capture(renderer, pacer, shot, width, height, { signal, progress } = {}) {
   const { gl } = renderer, most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
   if (!(Number.isInteger(shot.samples) && shot.samples >= 1)) throw new Error('a picture has a whole number of samples, at least 1');
   for (const side of [width, height])
@@ -20,7 +22,9 @@ export async function capture(renderer, pacer, shot, width, height) {
       const begin = performance.now(), rows = Math.min(pacer.rows(width, height), height - picture.rows);
       renderer.render(picture, shot, rows);
       await finished(gl);
+      signal?.throwIfAborted();
       if (gl.isContextLost()) throw new Error('the graphics card was lost');
+      progress?.((picture.samples + picture.rows / height) / shot.samples);
       pacer.learn(false, rows * width, performance.now() - begin);
     }
     const exposure = shot.settings.exposure > 0 ? shot.settings.exposure : renderer.exposureOf(picture);
@@ -34,7 +38,7 @@ export async function capture(renderer, pacer, shot, width, height) {
  * Returns the colours of a picture as it is shown: 4 bytes per pixel, rows from the bottom.
  * @param {import('./renderer.js').Renderer} renderer @param {Picture} picture @param {number} exposure
  */
-function readPixels(renderer, picture, exposure) {
+export function readPixels(renderer, picture, exposure) {
   const { gl } = renderer, { width, height } = picture;
   const texture = makeTexture(gl, gl.RGBA8, width, height), target = makeTarget(gl, [texture]);
   renderer.display(picture, exposure, target, width, height);

@@ -1,8 +1,10 @@
 /**
  * Decides what each frame renders, so that the page stays smooth: a quick picture while the view
- * changes; at rest finer ones, and at last all samples of the full one.
+ * changes; at rest finer ones, and at last all samples of the full one. Pictures of one sample are
+ * smoothed; the full one is not, and takes their place when its own noise is low.
  */
 import { Picture } from './picture.js';
+import { Smoother, hasNoise } from './smoother.js';
 
 /**
  * @typedef {import('./pacer.js').Pacer} Pacer
@@ -12,6 +14,8 @@ import { Picture } from './picture.js';
 
 /** View samples per pixel of a finished picture, and of one that shows the structure: it has no rays that light needs. */
 export const STILL_SAMPLES = 16, STRUCTURE_SAMPLES = 4;
+/** Samples from which on the full picture has less noise than a smoothed one. */
+const CLEAR_SAMPLES = 6;
 /** Milliseconds without a change after which a view counts as still. */
 const REST_MS = 120;
 /** Milliseconds in which a moving picture's exposure covers 63% of the way to a new one. */
@@ -29,6 +33,9 @@ export class PictureSchedule {
     this.renderer = renderer;
     this.canvas = canvas;
     this.pacer = pacer;
+    this.smoother = new Smoother(renderer);
+    /** Pictures that were smoothed: each takes other samples of the light. */
+    this.smoothed = 0;
     /** @type {Picture | null} */
     this.quick = null;
     /** @type {Picture | null} */
@@ -40,6 +47,8 @@ export class PictureSchedule {
     this.hasFull = false;
     /** Side of the full picture's pixels^-1, relative to the canvas; doubles until it is 1. */
     this.fullScale = 1;
+    /** Whether the full picture is still one of one sample that is smoothed, until it has the canvas's scale. */
+    this.isPreview = false;
     this.isFinished = false;
     /** Time of the last change that may go on, in milliseconds of the page. */
     this.changedAt = -Infinity;
@@ -79,7 +88,7 @@ export class PictureSchedule {
 
   /** Returns the bytes of the pictures' textures. */
   bytes() {
-    return (this.quick?.bytes() ?? 0) + (this.full?.bytes() ?? 0);
+    return (this.quick?.bytes() ?? 0) + (this.full?.bytes() ?? 0) + this.smoother.bytes();
   }
 
   /** @param {Shot} shot @param {number} now */
@@ -87,7 +96,7 @@ export class PictureSchedule {
     const scale = this.pacer.scale(this.canvas.width * this.canvas.height);
     const quick = (this.quick = this.#sized(this.quick, scale));
     quick.reset();
-    this.renderer.render(quick, shot, quick.height);
+    this.#renderSmoothed(quick, shot, quick.height);
     this.hasQuick = true;
     this.#adapt(quick, shot, now, false);
     this.#show(quick);
@@ -95,28 +104,56 @@ export class PictureSchedule {
     this.#send(true, quick.width * quick.height, now);
   }
 
+  /** Renders rows of a picture of one sample, and smooths it when it is complete. @param {Picture} picture @param {Shot} shot @param {number} rows */
+  #renderSmoothed(picture, shot, rows) {
+    if (!hasNoise(shot)) return this.renderer.render(picture, shot, rows);
+    const smoothed = { ...shot, smoothed: this.smoothed % shot.samples };
+    this.renderer.render(picture, smoothed, rows);
+    if (picture.rows > 0) return;
+    this.smoother.apply(picture, smoothed);
+    ++this.smoothed;
+  }
+
   /** Renders rows of the full picture. @param {Shot} shot @param {number} now */
   #refine(shot, now) {
     if (!this.hasFull) {
+      const scale = (this.quick?.width ?? 1) / this.canvas.width;
       this.hasFull = true;
-      this.fullScale = finerScale((this.quick?.width ?? 1) / this.canvas.width);
+      this.fullScale = finerScale(scale);
+      this.isPreview = scale < 1;
       this.full?.reset();
     }
-    const isLast = this.fullScale === 1;
     const full = (this.full = this.#sized(this.full, this.fullScale));
     const rows = Math.min(this.pacer.rows(full.width, full.height), full.height - full.rows);
-    this.renderer.render(full, shot, rows);
-    if (full.rows === 0) {
-      if (full.samples === 1) this.#adapt(full, shot, now, true);
-      if (isLast && full.samples >= wantedSamples(shot)) {
-        this.exposure = shot.settings.exposure > 0 ? shot.settings.exposure : this.renderer.exposureOf(full);
-        this.isFinished = true;
-      }
-      this.#show(full);
-      this.#count(full, shot);
-      if (!isLast) this.fullScale = finerScale(this.fullScale);
-    }
+    if (this.isPreview) this.#renderSmoothed(full, shot, rows);
+    else this.renderer.render(full, shot, rows);
+    if (full.rows === 0) this.#takeSample(full, shot, now);
     this.#send(false, rows * full.width, now);
+  }
+
+  /** Shows a sample of the full picture that is complete. @param {Picture} full @param {Shot} shot @param {number} now */
+  #takeSample(full, shot, now) {
+    this.#count(full, shot);
+    if (this.isPreview) {
+      this.#adapt(full, shot, now, true);
+      this.#show(full);
+      if (this.fullScale === 1) {
+        // The canvas shows it on while the samples add up in the other one.
+        [this.quick, this.full] = [full, this.quick];
+        this.full?.reset();
+        this.isPreview = false;
+      } else {
+        this.fullScale = finerScale(this.fullScale);
+      }
+      return;
+    }
+    const wanted = wantedSamples(shot), clear = hasNoise(shot) ? CLEAR_SAMPLES : 1;
+    if (full.samples === clear) this.#adapt(full, shot, now, true);
+    if (full.samples >= wanted) {
+      this.exposure = shot.settings.exposure > 0 ? shot.settings.exposure : this.renderer.exposureOf(full);
+      this.isFinished = true;
+    }
+    if (full.samples >= clear) this.#show(full);
   }
 
   /** Returns a picture of a scale; with the old one's buffers if it has the size. @param {Picture | null} picture @param {number} scale */

@@ -12,6 +12,7 @@ import { automaticExposure } from './exposure.js';
 import { cameraUniforms, groundUniforms, lightUniforms, sectionUniforms } from './frame_uniforms.js';
 import { Program, drawAll, makeTarget, makeTexture } from './gl_tools.js';
 import { texelBits } from './long_texture.js';
+import { SMOOTH_RADIUS } from './smoother.js';
 import { discSamples, hemisphereSamples, rotations, samplePlace } from './sample_tables.js';
 
 /** @typedef {import('./picture.js').Picture} Picture */
@@ -21,11 +22,13 @@ import { discSamples, hemisphereSamples, rotations, samplePlace } from './sample
 
 /** Parts of every shader that casts rays. */
 const CAST = ['dag', 'grid_ray', 'walk', 'camera'];
-const SHADERS = ['quad.vert', ...CAST, 'look', 'surface', 'sample', 'light', 'display', 'hits', 'reduce'];
+const SHADERS = ['quad.vert', ...CAST, 'look', 'surface', 'unit', 'sample', 'shade', 'light', 'reproject', 'smooth', 'display', 'hits', 'reduce'];
 /** Pixels from which exposure and steps are taken. */
 const EXPOSURE_SIZE = [256, 144];
 /** Steps after which a cast ends without a hit, so that the graphics card never hangs. */
 const MOST_STEPS = 16384;
+/** How far places of one surface may be from its plane, in cells or pixels, for the filter of moving pictures. */
+const SMOOTH_NEAR = '2.0';
 
 /** Loads the texts of all shaders. @returns {Promise<Map<string, string>>} */
 export async function loadShaders() {
@@ -36,7 +39,7 @@ export async function loadShaders() {
 /**
  * The contents of a picture: all but its size.
  * @typedef {{settings: Settings, place: Place, scene: SceneTextures, shown: number, mostInstances: number,
- *   samples: number, quick: boolean}} Shot
+ *   samples: number, quick: boolean, smoothed?: number}} Shot  smoothed: the picture is one for Smoother, by this light sample.
  */
 
 export class Renderer {
@@ -58,7 +61,7 @@ export class Renderer {
 
   /** Begins to compile the programs of the usual picture. */
   warmUp() {
-    for (const name of ['sample', 'light', 'display', 'reduce']) this.program(name);
+    for (const name of ['sample', 'light', 'reproject', 'smooth', 'display', 'reduce']) this.program(name);
   }
 
   /** Returns a program, which begins to compile with the first call. @param {string} name @param {boolean} [look]  With colours and normals. */
@@ -68,10 +71,12 @@ export class Renderer {
     if (program === undefined) {
       const text = (/** @type {string} */ part) => this.shaders.get(part) ?? '';
       const parts = {
-        sample: [...CAST, ...(look ? ['look'] : []), 'surface', 'sample'], light: [...CAST, 'light'],
+        sample: [...CAST, ...(look ? ['look'] : []), 'surface', 'unit', 'sample'], light: [...CAST, 'unit', 'shade', 'light'],
+        reproject: ['camera', 'unit', 'reproject'], smooth: ['camera', 'unit', 'shade', 'smooth'],
         hits: [...CAST, 'hits'], display: ['display'], reduce: ['reduce'],
       }[name] ?? [];
-      const head = `#version 300 es\n${GLSL}\n#define TEXEL_BITS ${texelBits(this.gl)}\n#define MOST_STEPS ${MOST_STEPS}\n#define INSTANCE_STEPS ${INSTANCE_STEPS}\n` +
+      const precision = ['float', 'int', 'sampler2D', 'usampler2D'].map((type) => `precision highp ${type};\n`).join('');
+      const head = `#version 300 es\n${precision}${GLSL}\n#define SMOOTH_RADIUS ${SMOOTH_RADIUS}\n#define SMOOTH_NEAR ${SMOOTH_NEAR}\n#define TEXEL_BITS ${texelBits(this.gl)}\n#define MOST_STEPS ${MOST_STEPS}\n#define INSTANCE_STEPS ${INSTANCE_STEPS}\n` +
           `#define CUT_ALBEDO vec3(${LIGHT.cutAlbedo})\n${SHOWS.map((show, i) => `#define SHOW_${show.toUpperCase()} ${i}\n`).join('')}` +
           `${TONES.map((tone, i) => `#define TONE_KIND_${tone.toUpperCase()} ${i}\n`).join('')}` +
           `${BACKGROUNDS.map((name, i) => `#define BACKGROUND_${name.toUpperCase()} ${i}\n`).join('')}` +
@@ -116,6 +121,15 @@ export class Renderer {
     program.ints({ u_levels: shot.scene.info.levels, u_shown: Math.min(shot.shown, settings.level ?? DAG.maxLevels), u_show: SHOWS.indexOf(settings.show) });
   }
 
+  /** Sets what shade.glsl needs. @param {Program} program @param {Shot} shot */
+  setShade(program, shot) {
+    const { settings, place, scene } = shot;
+    program.floats(lightUniforms(place, settings));
+    const [least, most] = shownRange(settings.show, scene.info.levels, shot.mostInstances) ?? [0, 1];
+    program.floats({ u_least: least, u_most: most, u_view_distance: distance(settings.camera.eye, settings.camera.target) / place.side });
+    program.ints({ u_sky_occluded: settings.occlusion.samples > 0 });
+  }
+
   /**
    * Renders rows of the next sample of a picture, from the top; completes the sample with the last row.
    * @param {Picture} picture @param {Shot} shot @param {number} rows
@@ -143,18 +157,16 @@ export class Renderer {
     gl.bindFramebuffer(gl.FRAMEBUFFER, picture.viewTarget);
     drawAll(gl);
 
-    const rays = this.raysPerSample(shot);
+    const rays = this.raysPerSample(shot), index = shot.smoothed ?? picture.samples;
     this.prepareTables(rays.light * shot.samples, Math.max(1, rays.occlusion * shot.samples));
     const light = this.program('light');
     light.use();
     this.setCast(light, shot, picture);
-    light.floats(lightUniforms(shot.place, settings));
-    const [least, most] = shownRange(settings.show, scene.info.levels, shot.mostInstances) ?? [0, 1];
-    light.floats({ u_least: least, u_most: most, u_view_distance: distance(settings.camera.eye, settings.camera.target) / shot.place.side });
+    this.setShade(light, shot);
     light.ints({
-      u_first: picture.samples === 0, u_index: picture.samples, u_light_samples: rays.light, u_occlusion_samples: rays.occlusion,
-      u_light_first: settings.sun.angle > 0 ? picture.samples * rays.light : 0,
-      u_shadows: settings.shadows, u_sky_occluded: rays.occlusion > 0,
+      u_first: picture.samples === 0, u_only_visible: shot.smoothed !== undefined,
+      u_index: index, u_light_samples: rays.light, u_occlusion_samples: rays.occlusion,
+      u_light_first: settings.sun.angle > 0 ? index * rays.light : 0, u_shadows: settings.shadows,
     });
     light.textures({ ...scene.walk(), u_start: picture.views[0], u_normal: picture.views[1], u_face: picture.views[2], u_sum: picture.sums[picture.current],
                     u_disc: this.tables.textures[0], u_hemisphere: this.tables.textures[1], u_rotations: this.circle });
@@ -170,7 +182,6 @@ export class Renderer {
     picture.rows = 0;
     ++picture.samples;
   }
-
 
   /** Returns evenly spread pixels of a texture, 4 numbers each: at most EXPOSURE_SIZE. @param {WebGLTexture} texture @param {Picture} picture @returns {Float32Array} */
   smallCopy(texture, picture) {

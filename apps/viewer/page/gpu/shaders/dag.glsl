@@ -1,10 +1,5 @@
 // The DAG in textures: the port of trace/svdag_nodes.hpp.
 
-precision highp float;
-precision highp int;
-precision highp usampler2D;
-precision highp sampler2D;
-
 uniform usampler2D u_nodes;   // r: the words of NODE
 uniform usampler2D u_leaves;  // rg: the leaf blocks, lower half first
 uniform int u_levels;         // L of the file

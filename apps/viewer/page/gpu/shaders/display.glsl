@@ -1,10 +1,6 @@
 // Shows the picture: exposure, tone mapping, background, sRGB and dither, as render/tone_map.hpp,
 // sky.hpp, render_plan.cpp and image/dither.hpp do. A picture with fewer pixels than the canvas is enlarged.
 
-precision highp float;
-precision highp int;
-precision highp sampler2D;
-
 uniform sampler2D u_sum;      // red, green and blue of surfaces, and how many samples hit one
 uniform float u_samples;      // in the sum
 uniform int u_tone;           // TONE_KIND_*

@@ -1,20 +1,15 @@
-// Lights the view samples and adds them to the picture: the port of render/direct_light.hpp,
-// ambient_occlusion.hpp, sky.hpp and render_tile.hpp.
+// Casts the rays of sun and sky from the view samples, and adds their light to the picture: the port of
+// render/direct_light.hpp, ambient_occlusion.hpp and render_tile.hpp.
 
 uniform sampler2D u_start, u_normal, u_face;  // of sample.glsl
 uniform sampler2D u_sum;                      // the sum of the samples before this one
 uniform bool u_first;
-uniform int u_show;
-uniform float u_least, u_most;                // the values that are shown darkest and brightest
-uniform float u_view_distance;                // grid sides
+uniform bool u_only_visible;                  // write only which part of sky and sun each pixel sees, for smooth.glsl
 uniform int u_index;                          // of the view sample in its pixel
 uniform int u_light_samples, u_occlusion_samples;  // rays per view sample
 uniform int u_light_first;                    // the first sample of the sun in its table
-uniform bool u_shadows, u_sky_occluded;
-uniform vec3 u_sun, u_sun_u, u_sun_v;         // unit vector to the sun; radii of its disc at distance 1
-uniform vec3 u_sun_light;                     // irradiance / pi
-uniform vec3 u_zenith, u_horizon, u_ground, u_sky_up, u_fill;
-uniform vec3 u_albedo;
+uniform bool u_shadows;
+uniform vec3 u_sun_u, u_sun_v;                // radii of the sun's disc at distance 1
 uniform float u_occlusion_distance, u_occlusion_cone;
 uniform sampler2D u_disc, u_hemisphere, u_rotations;  // column: index of the sample; row: set
 
@@ -41,22 +36,6 @@ PixelSamples pixelSamples(ivec2 pixel, uint purpose) {
 }
 vec2 rotated(PixelSamples pixel, vec2 p) {
   return vec2(p.x * pixel.rotation.x - p.y * pixel.rotation.y, p.x * pixel.rotation.y + p.y * pixel.rotation.x);
-}
-
-vec3 unpackUnit(vec2 p) {
-  vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-  if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
-  return normalize(n);
-}
-
-vec3 srgbToLinear(vec3 c) {
-  return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, vec3(lessThanEqual(c, vec3(0.04045))));
-}
-
-vec3 skyLight(vec3 normal, vec3 view, float open) {
-  vec3 light = mix(u_ground, mix(u_zenith, u_horizon, LIGHT_HORIZON_IN_DOME), 0.5 + 0.5 * dot(normal, u_sky_up));
-  if (u_sky_occluded) return light * (LIGHT_OPEN * open);
-  return light * max(LIGHT_FILL + LIGHT_FILL_FACING * dot(normal, view) + LIGHT_FILL_ASIDE * dot(normal, u_fill), 0.0);
 }
 
 // Returns a ray from a surface, or from the ground, which may lie outside the grid.
@@ -102,67 +81,27 @@ float openSky(vec3 start, vec3 normal, vec3 face, float cell_side, PixelSamples 
   return float(open) / float(u_occlusion_samples);
 }
 
-// The colour scale of render/film/picture_pass.cpp: from black over blue, red and yellow to white.
-vec3 heat(float value) {
-  float v = clamp(value, 0.0, 1.0);
-  float angle = 6.2831853 * (0.5 / 3.0 + 1.0 - 1.2 * v);
-  float spread = 1.3 * v * (1.0 - v) * 0.5;
-  float c = cos(angle) * spread, s = sin(angle) * spread;
-  return clamp(vec3(v - 0.14861 * c + 1.78277 * s, v - 0.29227 * c - 0.90649 * s, v + 1.97294 * c), 0.0, 1.0);
-}
-
-// Returns the display colour of a value of the structure.
-vec3 shown(vec4 normal, float value, vec3 view, float open) {
-  if (u_show == SHOW_NORMAL) return normal.xyz * 0.5 + 0.5;
-  if (u_show == SHOW_OCCLUSION) return vec3(open);
-  if (u_show == SHOW_DEPTH) return vec3(0.08 + 0.92 / (1.0 + normal.w / u_view_distance));
-  if (u_show == SHOW_STEPS) return heat(value / u_most);
-  float facing = 0.55 + 0.45 * max(dot(normal.xyz, view), 0.0);
-  return heat(0.12 + 0.8 * (value - u_least) / (u_most - u_least)) * facing;
-}
-
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   ivec2 pixel = ivec2(pixelOfFragment());
   vec4 start = texelFetch(u_start, at, 0);
   vec4 normal = texelFetch(u_normal, at, 0);
   vec4 face = texelFetch(u_face, at, 0);
-  vec3 direction = normalize(pixelDirection(vec2(pixel)));
   bool is_hit = start.w > 0.0, is_ground = face.z < -2.5;
-  vec3 radiance = vec3(0.0);
-  float covered = is_hit ? 1.0 : 0.0;
-  if (!is_hit) {
-    // display.glsl puts the sky behind the surfaces.
-    if (u_show == SHOW_STEPS) radiance = heat(face.w / u_most);
-    if (u_show == SHOW_OCCLUSION) radiance = vec3(1.0);
-  } else {
+  float open = 1.0, lit = 0.0;
+  if (is_hit) {
     vec3 flat_normal = unpackUnit(face.xy);
-    float open = 1.0;
     if (u_occlusion_samples > 0 && (u_show == SHOW_LIGHT || u_show == SHOW_OCCLUSION))
       open = openSky(start.xyz, normal.xyz, flat_normal, start.w, pixelSamples(pixel, 0u), is_ground);
-    if (u_show == SHOW_LIGHT) {
-      vec3 albedo = u_albedo;
-      if (face.z >= 0.0) {
-        uint code = uint(face.z);
-        albedo = srgbToLinear(vec3(float(code & 255u), float(code >> 8u & 255u), float(code >> 16u)) / 255.0);
-      } else if (face.z < -1.5) {
-        albedo = CUT_ALBEDO;
-      }
-      vec3 light = skyLight(normal.xyz, -direction, open);
-      if (u_sun_light != vec3(0.0))
-        light += u_sun_light * sunlight(start.xyz, normal.xyz, flat_normal, start.w, pixelSamples(pixel, 1u), is_ground);
-      radiance = light * albedo;
-      if (is_ground) {
-        const vec3 luminance = EXPOSURE_LUMINANCE;
-        vec3 all = skyLight(normal.xyz, -direction, 1.0) + u_sun_light * max(dot(normal.xyz, u_sun), 0.0);
-        covered = face.w * max(1.0 - dot(light, luminance) / dot(all, luminance), 0.0);
-        radiance = vec3(0.0);
-      }
-    } else {
-      radiance = shown(normal, face.w, -direction, open);
-    }
+    if (u_show == SHOW_LIGHT && u_sun_light != vec3(0.0))
+      lit = sunlight(start.xyz, normal.xyz, flat_normal, start.w, pixelSamples(pixel, 1u), is_ground);
   }
-  vec4 sum = vec4(radiance, covered);
+  if (u_only_visible) {
+    float above = dot(normal.xyz, u_sun);
+    out_sum = vec4(open, above > 0.0 ? min(lit / above, 1.0) : 0.0, 0.0, 1.0);
+    return;
+  }
+  vec4 sum = shaded(is_hit, normal, face, normalize(pixelDirection(vec2(pixel))), open, lit);
   if (!u_first) sum += texelFetch(u_sum, at, 0);
   out_sum = sum;
 }

@@ -1,7 +1,4 @@
 // Picks evenly spread pixels of a picture.
-precision highp float;
-precision highp int;
-precision highp sampler2D;
 uniform sampler2D u_picture;
 uniform vec2 u_from, u_to;  // sizes of the picture and of this one
 layout(location = 0) out vec4 out_pixel;

@@ -13,12 +13,6 @@ layout(location = 0) out vec4 out_start;   // where rays start, grid coordinates
 layout(location = 1) out vec4 out_normal;  // shading normal; w: depth in grid sides
 layout(location = 2) out vec4 out_face;    // xy: octahedral normal of the face; z: colour code; w: the value to show
 
-vec2 packUnit(vec3 n) {
-  n /= abs(n.x) + abs(n.y) + abs(n.z);
-  vec2 turned = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
-  return n.z < 0.0 ? turned : n.xy;
-}
-
 void main() {
   vec3 direction = pixelDirection(pixelOfFragment());
   GridRay ray = rayFromEye(u_eye, direction);
