@@ -335,7 +335,7 @@ describeInBrowsers('hands', (_, browser) => {
   it('is usable by keyboard, names every control, and fits a phone', async () => {
     for (const size of [{ width: 390, height: 844 }, SIZE]) {
       const page = await load(QUICK, size);
-      for (const label of ['View', 'Light', 'Section', 'Measure', 'Notes', 'Camera path', 'Save and share', 'Statistics', 'Help']) {
+      for (const label of ['View', 'Light', 'Section', 'Measure', 'Notes', 'Camera path', 'Compare', 'Save and share', 'Statistics', 'Help']) {
         await page.focus(`.toolbar [aria-label="${label}"]`);
         await page.keyboard.press('Enter');
         assert.equal(await page.$eval('.panel h2', (title) => title.textContent), label);

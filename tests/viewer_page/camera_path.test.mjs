@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { cameraAt, completeKeys, pathToJson, withKey, withTime, withoutKey } from '../../apps/viewer/page/hands/camera_path.js';
+import { cameraAt, completeKeys, frameTimes, pathToJson, turntable, withKey, withKeyAt, withTime, withoutKey } from '../../apps/viewer/page/hands/camera_path.js';
 import { DEFAULTS, mergeSettings } from '../../apps/viewer/page/settings.js';
 
 const FIRST = { eye: [0, 0, 9], target: [0, 0, 0], up: [0, 1, 0], fov: 40 };
@@ -66,4 +66,36 @@ test('a path file has one line per key and only keys that `render --path` reads'
   const text = pathToJson(KEYS, [0, 1, 0.5]);
   assert.deepEqual(JSON.parse(text), { sun: [0, 1, 0.5], keys: KEYS });
   assert.equal(text.split('\n').length, KEYS.length + 6);
+});
+
+test('a key that is dragged stays between its neighbours, which stay where they are', () => {
+  const times = (keys) => keys.map((key) => key.time);
+  assert.deepEqual(times(withKeyAt(KEYS, 1, 0.7)), [0, 0.7, 2, 5]);
+  assert.deepEqual(times(withKeyAt(KEYS, 1, 9)), [0, 1.999, 2, 5]);
+  assert.deepEqual(times(withKeyAt(KEYS, 2, -9)), [0, 1.5, 1.501, 5]);
+  assert.deepEqual(times(withKeyAt(KEYS, 3, 60)), [0, 1.5, 2, 60]);
+  assert.deepEqual(times(withKeyAt(KEYS, 0, -3)), [-3, 1.5, 2, 5]);
+  assert.deepEqual(mergeSettings(DEFAULTS, { path: withKeyAt(KEYS, 1, 9) }).path[1].time, 1.999);
+});
+
+test('a turntable is a circle around the target, and ends where it began', () => {
+  const camera = { eye: [4, 3, 0], target: [1, 1, 1], up: [0, 2, 0], fov: 35 };
+  const path = turntable(camera, 10), keys = completeKeys(mergeSettings(DEFAULTS, { path }).path, FIRST);
+  assert.deepEqual([keys[0].time, keys.at(-1).time], [0, 10]);
+  assert.deepEqual(keys.at(-1).eye, camera.eye);
+  const radius = Math.hypot(3, 1);
+  for (let time = 0; time <= 10; time += 0.05) {
+    const { eye, target, up, fov } = cameraAt(keys, time);
+    [...target, ...up, fov].forEach((x, i) => assert.ok(Math.abs(x - [1, 1, 1, 0, 2, 0, 35][i]) < 1e-9));
+    assert.ok(Math.abs(eye[1] - 3) < 1e-9);
+    assert.ok(Math.abs(Math.hypot(eye[0] - 1, eye[2] - 1) - radius) < 0.01 * radius, `at ${time}`);
+  }
+  const quarter = cameraAt(keys, 2.5).eye;  // counterclockwise from above: from +x towards -z
+  [1 + -1, 3, 1 - 3].forEach((x, i) => assert.ok(Math.abs(quarter[i] - x) < 1e-9));
+});
+
+test('a film has a frame at both ends', () => {
+  assert.deepEqual(frameTimes([{ time: 1 }, { time: 2 }], 4), [1, 1.25, 1.5, 1.75, 2]);
+  assert.deepEqual(frameTimes([{ time: 0 }, { time: 0.3 }], 10).length, 4);
+  assert.deepEqual(frameTimes([{ time: 5 }], 30), [5]);
 });

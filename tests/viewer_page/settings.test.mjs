@@ -26,7 +26,7 @@ function randomSettings(seed) {
     tone: pick(TONES), background: pick(BACKGROUNDS), ground: random() < 0.5,
     occlusion: { samples: Math.floor(random() * 256), distance: random() * scale, cone: random() },
     lod: random() * 4, cubes: random() * 100, level: maybe(() => Math.floor(random() * 20)),
-    colors: random() < 0.5, normals: random() < 0.5, show: pick(SHOWS), mode: pick(MODES),
+    colors: random() < 0.5, normals: random() < 0.5, hidden: list((i) => 3 * i), show: pick(SHOWS), mode: pick(MODES),
     section: { box: maybe(box), plane: maybe(() => ({ point: vector(), normal: vector(1) })) },
     measures: list(() => ({ from: vector(), to: vector() })),
     annotations: list(() => ({ text: pick(notes), point: vector(), camera: camera() })),

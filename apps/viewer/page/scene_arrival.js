@@ -86,18 +86,18 @@ export class SceneArrival {
     this.memory = new SceneMemory(this.gl, info);
     this.textures = this.#newTextures(this.memory);
     const { finest, isWhole } = this.memory;
-    const { levels, resolution, origin, voxelSize, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, source } = info;
+    const { levels, resolution, origin, voxelSize, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, materials, source } = info;
     const side = voxelSize * resolution;
     const box = { low: origin, high: /** @type {Vec3} */ (origin.map((x) => x + side)) };
     this.info = {
-      name: source.name, levels, resolution, origin, voxelSize, bounds: box, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, source,
+      name: source.name, levels, resolution, origin, voxelSize, bounds: box, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, materials, source,
       view: this.#homeIn(box, info), home: info.home, cubes: info.cubes,
     };
     this.bytesLoaded = bytes;
     this.report('info', this.info);
     if (info.isEmpty) this.report('note', 'This scene has no voxels.');
     if (!isWhole) this.report('note', `This scene is too large for the graphics card: it is shown down to level ${finest} of ${levels}.`);
-    this.loader.load({ shown: finest, colors: hasColors && isWhole, normals: hasNormals && isWhole });
+    this.loader.load({ shown: finest, colors: hasColors && isWhole, normals: hasNormals && isWhole, materials: materials !== null && isWhole });
   }
 
   /** Takes a level or the attributes. @param {LoaderMessage} message */

@@ -3,6 +3,7 @@
  * again after the graphics card has lost them.
  */
 import { finestLevelThatFits } from './gpu/scene_textures.js';
+import { cellNumber, countMaterials, materialOf, withPlaces } from './materials.js';
 
 /** @typedef {import('./file/scene_loader.js').FileInfo} FileInfo */
 /** @typedef {import('./file/scene_loader.js').LoaderMessage} LoaderMessage */
@@ -23,6 +24,8 @@ export class SceneMemory {
     this.mostInstances = 1;
     /** @type {import('./file/scene_loader.js').Attributes | null} */
     this.attributes = null;
+    /** @type {import('./materials.js').CellIndex | null} */
+    this.cells = null;
   }
 
   /** The DAG for rays on the CPU. @returns {import('./trace.js').Dag} */
@@ -30,6 +33,21 @@ export class SceneMemory {
     const { levels, origin, voxelSize } = this.info;
     return { levels, shown: this.shown, origin, voxelSize, nodes: this.nodes, leaves: this.leaves };
   }
+
+  /** Returns the material of a cell; null without materials. @param {import('./math.js').Vec3} voxel  One in the cell. @param {number} level @returns {number | null} */
+  material(voxel, level) {
+    const { cells, attributes } = this;
+    return cells && attributes?.materials ? materialOf(attributes.materials, cellNumber(this.dag(), cells, voxel, level)) : null;
+  }
+
+  /** Returns how many cells each material has; null before all have arrived, and if there are very many. */
+  materialCounts() {
+    const { attributes } = this;
+    if (!attributes?.materials) return null;
+    return (this.counts ??= countMaterials(this.dag(), attributes.index, attributes.materials));
+  }
+  /** @type {number[] | null} */
+  counts = null;
 
   /** Takes a level or the attributes from the loader, and uploads them. @param {LoaderMessage} message @param {SceneTextures} textures */
   add(message, textures) {
@@ -44,6 +62,7 @@ export class SceneMemory {
       textures.leaves.set(0, message.halves);
     } else if (message.type === 'attributes') {
       this.attributes = message;
+      this.cells = withPlaces(message.index, this.info.levelBegin);
       textures.setLook(message);
       return;
     } else {

@@ -31,6 +31,7 @@ import { cross, length, normalized, sub } from './math.js';
  * @property {number | null} level  Finest level shown; null: all.
  * @property {boolean} colors
  * @property {boolean} normals
+ * @property {number[]} hidden  Ids of the materials that rays pass through.
  * @property {Show} show
  * @property {{box: Box | null, plane: Plane | null}} section
  * @property {Mode} mode
@@ -69,6 +70,7 @@ export const DEFAULTS = {
   level: null,
   colors: true,
   normals: true,
+  hidden: [],
   show: 'light',
   section: { box: null, plane: null },
   mode: 'orbit',
@@ -234,6 +236,7 @@ const settingsCheck = record({
   level: orNull(integer(0, 32)),
   colors: boolean,
   normals: boolean,
+  hidden: list(integer(0, 65534), 65535),
   show: oneOf(SHOWS),
   section: record({
     box: orNull(whole({ low: vector, high: vector }, {}, checkBox)),

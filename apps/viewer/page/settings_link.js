@@ -75,6 +75,7 @@ export function settingsToHash(settings, home = null) {
     const value = valueAt(settings, ...place);
     if (value !== valueAt(DEFAULTS, ...place)) put(key, kind.write(value));
   }
+  if (settings.hidden.length) put('hidden', settings.hidden.join(','));
   if (section.box) put('box', words(section.box.low, section.box.high));
   if (section.plane) put('plane', words(section.plane.point, section.plane.normal));
   for (const { from, to } of settings.measures) put('measure', words(from, to));
@@ -89,6 +90,7 @@ export function settingsToHash(settings, home = null) {
 
 /** Readers of the other keys: each returns changes of the settings `all`. @type {{[key: string]: (value: string, all: any) => any}} */
 const READERS = {
+  hidden: (v) => ({ hidden: v.split(',').map(toNumber) }),
   box: (v) => {
     const [low, high] = v.split(';').map(toVector);
     return { section: { box: { low, high } } };

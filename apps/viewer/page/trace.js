@@ -19,8 +19,8 @@ function floatOf(bits) {
   return floats[0];
 }
 
-/** @param {number} v */
-function count8(v) {
+/** Returns the bits of 8 that are set. @param {number} v */
+export function bitCount(v) {
   v = v - ((v >> 1) & 0x55);
   v = (v & 0x33) + ((v >> 2) & 0x33);
   return (v + (v >> 4)) & 0x0f;
@@ -32,24 +32,25 @@ function bytesOf(half) {
 }
 
 /** @param {Dag} dag @param {number} node @param {number} level */
-function childMask(dag, node, level) {
+export function childMask(dag, node, level) {
   if (level < dag.levels - 2) return dag.nodes[node] & 0xff;
   if (level === dag.levels - 1) return node;
   return bytesOf(dag.leaves[2 * node]) | (bytesOf(dag.leaves[2 * node + 1]) << 4);
 }
 
 /** @param {Dag} dag @param {number} node @param {number} level @param {number} index */
-function childOf(dag, node, level, index) {
-  if (level < dag.levels - 2) return dag.nodes[node + 1 + count8(dag.nodes[node] & ((1 << index) - 1))];
+export function childOf(dag, node, level, index) {
+  if (level < dag.levels - 2) return dag.nodes[node + 1 + bitCount(dag.nodes[node] & ((1 << index) - 1))];
   return (dag.leaves[2 * node + (index >> 2)] >>> (8 * (index & 3))) & 0xff;
 }
 
 /**
  * Returns the first cell along a ray in world units, or null.
  * @param {Dag} dag @param {Vec3} from @param {Vec3} direction @param {number} [most] longest distance
+ * @param {((voxel: Vec3, level: number) => boolean) | null} [isLeftOut]  Whether rays pass through a cell.
  * @returns {Hit | null}
  */
-export function cast(dag, from, direction, most = Infinity) {
+export function cast(dag, from, direction, most = Infinity, isLeftOut = null) {
   if (dag.shown < 1) return null;
   const side = dag.voxelSize * 2 ** dag.levels;
   const start = [0, 1, 2].map((a) => (from[a] - dag.origin[a]) / side);
@@ -115,13 +116,16 @@ export function cast(dag, from, direction, most = Infinity) {
     const index = child ^ mirrored;
     if ((mask >> index) & 1) {
       const level = 23 - bit;
-      if (level === dag.shown) return toHit(level);
-      stack[level - 1] = node;
-      node = childOf(dag, node, level - 1, index);
-      mask = childMask(dag, node, level);
-      --bit;
-      select();
-      continue;
+      if (level < dag.shown) {
+        stack[level - 1] = node;
+        node = childOf(dag, node, level - 1, index);
+        mask = childMask(dag, node, level);
+        --bit;
+        select();
+        continue;
+      }
+      const hit = toHit(level);
+      if (!isLeftOut?.(hit.voxel, level)) return hit;
     }
     if (exit > tMax) return null;
     t = exit;

@@ -154,10 +154,19 @@ class CanvasViewer extends Events {
   castNow(origin, direction, most = Infinity) {
     return this.#cast(origin, direction, most, Infinity);
   }
+  /** @param {import('./viewer_types.js').Hit} hit */
+  material(hit) {
+    return this.arrival?.memory?.material(hit.voxel, hit.level) ?? null;
+  }
+  materialCounts() {
+    return this.arrival?.memory?.materialCounts() ?? null;
+  }
   /** @param {Vec3} point */
   contains(point) {
     const dag = this.arrival?.memory?.dag();
-    return dag !== undefined && contains(dag, point);
+    if (dag === undefined || !contains(dag, point)) return false;
+    const { hidden } = this.settings, voxel = /** @type {Vec3} */ (point.map((x, a) => Math.floor((x - dag.origin[a]) / dag.voxelSize)));
+    return hidden.length === 0 || !hidden.includes(this.arrival?.memory?.material(voxel, dag.shown) ?? -1);
   }
   /** @param {number} x @param {number} y */
   async pick(x, y) {
@@ -169,8 +178,10 @@ class CanvasViewer extends Events {
   #cast(origin, direction, most, level) {
     const dag = this.arrival?.memory?.dag();
     if (dag === undefined) return null;
-    const shown = { ...dag, shown: Math.min(dag.shown, level) };
-    return castInSection(this.settings.section, origin, direction, most, (from, along, end) => cast(shown, from, along, end));
+    const shown = { ...dag, shown: Math.min(dag.shown, level) }, { hidden } = this.settings, { memory } = this.arrival ?? {};
+    const isLeftOut = hidden.length && memory
+      ? (/** @type {Vec3} */ voxel, /** @type {number} */ at) => hidden.includes(memory.material(voxel, at) ?? -1) : null;
+    return castInSection(this.settings.section, origin, direction, most, (from, along, end) => cast(shown, from, along, end, isLeftOut));
   }
 
   // ---- pictures
@@ -259,13 +270,15 @@ class CanvasViewer extends Events {
 
   /**
    * Renders a picture in full quality, as PNG, once the scene has arrived.
-   * @param {{width?: number, height?: number, samples?: number}} [size]
+   * @param {Parameters<Viewer['capture']>[0]} [options]
    */
-  async capture({ width = this.canvas.width, height = this.canvas.height, samples = STILL_SAMPLES } = {}) {
+  async capture({ width = this.canvas.width, height = this.canvas.height, samples = STILL_SAMPLES, camera, ...job } = {}) {
     await this.started;
     await this.arrival?.ended;
     if (this.renderer === null || this.isLost || this.isDestroyed) throw new Error('there is no scene');
-    return capture(this.renderer, this.pacer, this.shot(false, samples), width, height);
+    const shot = this.shot(false, samples);
+    if (camera) shot.settings.camera = camera;
+    return capture(this.renderer, this.pacer, shot, width, height, job);
   }
 
   /** For tests: the cells that the pixels' rays hit, 4 numbers each, rows from the bottom; see hits.glsl. @param {number} width @param {number} height */

@@ -25,6 +25,7 @@
  * @property {number} fileBytes
  * @property {boolean} hasColors
  * @property {boolean} hasNormals
+ * @property {string[] | null} materials  Names by id; null if the file has none.
  * @property {{name?: string, vertices?: number, triangles?: number}} [source]
  * @property {Camera} view  The suggested view.
  * @property {(Camera & {sun?: Vec3}) | null} home  The view of the file, with a sun if it is an interior.
@@ -53,8 +54,11 @@
  * @property {() => Camera} camera  The camera in force: that of the settings, else the suggested view.
  * @property {(x: number, y: number) => Promise<Hit | null>} pick  CSS pixels from the canvas's corner.
  * @property {(origin: Vec3, direction: Vec3, distance: number) => Hit | null} castNow  Unit direction.
+ * @property {(hit: Hit) => number | null} material  Its id; null without materials.
+ * @property {() => number[] | null} materialCounts  Cells of the finest level with materials, by id; null before they have arrived, and for very large scenes.
  * @property {(point: Vec3) => boolean} contains  Whether a point lies in a set voxel.
- * @property {(options: {width?: number, height?: number, samples?: number}) => Promise<Blob>} capture
+ * @property {(options?: {width?: number, height?: number, samples?: number, camera?: Camera, signal?: AbortSignal,
+ *   progress?: (part: number) => void}) => Promise<Blob>} capture  `camera`: another than the one in force; `progress` takes 0 to 1.
  * @property {() => Promise<void>} whenStill
  * @property {() => Statistics} statistics
  * @property {() => [number, number] | null} shownRange  The values that the views level, steps and sharing show darkest and brightest; binary logarithms for sharing.

@@ -15,12 +15,13 @@ const PARTS = ['source', 'container', 'levels', 'attributes', 'wire', 'worker'];
  * @typedef {{
  *   levels: number, resolution: number, origin: [number, number, number], voxelSize: number, voxels: number,
  *   dagNodesPerLevel: number[], fileBytes: number, isEmpty: boolean,
- *   words: number, leafBlocks: number, levelBegin: number[], hasColors: boolean, hasNormals: boolean,
+ *   words: number, leafBlocks: number, levelBegin: number[], hasColors: boolean, hasNormals: boolean, materials: string[] | null,
  *   up: 'x' | 'y' | 'z' | null, home: (import('../settings.js').Camera & {sun?: [number, number, number]}) | null, cubes: boolean,
  *   source: {name: string, vertices: number, triangles: number}}} FileInfo
  */
 /** @typedef {{precision: number, begins: Uint32Array, words: Uint32Array}} ValuePages */
-/** @typedef {{index: {finest: number, cells: number, width: number[], words: Uint32Array}, colors: ValuePages | null, normals: ValuePages | null}} Attributes */
+/** @typedef {{index: {finest: number, cells: number, width: number[], words: Uint32Array}, colors: ValuePages | null, normals: ValuePages | null,
+ *   materials: {materials: number, begins: Uint32Array, words: Uint32Array} | null}} Attributes */
 /**
  * The messages of the worker.
  * @typedef {{type: 'info', info: FileInfo, bytes: number}
@@ -56,7 +57,7 @@ export class SceneLoader {
     else this.worker.postMessage({ type: 'open', url: new URL(from.url ?? '', document.baseURI).href });
   }
 
-  /** Loads cells down to level `shown`, and then attributes. @param {{shown: number, colors: boolean, normals: boolean}} wanted */
+  /** Loads cells down to level `shown`, and then attributes. @param {{shown: number, colors: boolean, normals: boolean, materials: boolean}} wanted */
   load(wanted) {
     this.worker?.postMessage({ type: 'load', ...wanted });
   }

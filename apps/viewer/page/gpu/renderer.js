@@ -22,7 +22,7 @@ import { discSamples, hemisphereSamples, rotations, samplePlace } from './sample
 
 /** Parts of every shader that casts rays. */
 const CAST = ['dag', 'grid_ray', 'walk', 'camera'];
-const SHADERS = ['quad.vert', ...CAST, 'look', 'surface', 'unit', 'sample', 'shade', 'light', 'reproject', 'smooth', 'display', 'hits', 'reduce'];
+const SHADERS = ['quad.vert', ...CAST, 'look', 'materials', 'surface', 'unit', 'sample', 'shade', 'light', 'reproject', 'smooth', 'display', 'hits', 'reduce'];
 /** Pixels from which exposure and steps are taken. */
 const EXPOSURE_SIZE = [256, 144];
 /** Steps after which a cast ends without a hit, so that the graphics card never hangs. */
@@ -41,6 +41,10 @@ export async function loadShaders() {
  * @typedef {{settings: Settings, place: Place, scene: SceneTextures, shown: number, mostInstances: number,
  *   samples: number, quick: boolean, smoothed?: number}} Shot  smoothed: the picture is one for Smoother, by this light sample.
  */
+
+/** Returns whether rays pass through materials of a shot. @param {Shot} shot */
+const hasHidden = ({ scene, settings }) => settings.hidden.length > 0 && (scene.look?.materials ?? null) !== null;
+const NO_LOOK = { colors: false, normals: false };
 
 export class Renderer {
   /** @param {WebGL2RenderingContext} gl @param {Map<string, string>} shaders */
@@ -64,23 +68,27 @@ export class Renderer {
     for (const name of ['sample', 'light', 'reproject', 'smooth', 'display', 'reduce']) this.program(name);
   }
 
-  /** Returns a program, which begins to compile with the first call. @param {string} name @param {boolean} [look]  With colours and normals. */
-  program(name, look = false) {
-    const key = look ? `${name} with colours` : name;
+  /**
+   * Returns a program, which begins to compile with the first call.
+   * @param {string} name @param {boolean} [look]  With colours and normals. @param {boolean} [hidden]  Rays pass hidden materials.
+   */
+  program(name, look = false, hidden = false) {
+    const key = `${name}${look ? ' with colours' : ''}${hidden ? ' without hidden materials' : ''}`;
     let program = this.programs.get(key);
     if (program === undefined) {
       const text = (/** @type {string} */ part) => this.shaders.get(part) ?? '';
+      const cast = ['dag', 'grid_ray', ...(look || hidden ? ['look'] : []), ...(hidden ? ['materials'] : []), 'walk', 'camera'];
       const parts = {
-        sample: [...CAST, ...(look ? ['look'] : []), 'surface', 'unit', 'sample'], light: [...CAST, 'unit', 'shade', 'light'],
+        sample: [...cast, 'surface', 'unit', 'sample'], light: [...cast, 'unit', 'shade', 'light'],
         reproject: ['camera', 'unit', 'reproject'], smooth: ['camera', 'unit', 'shade', 'smooth'],
-        hits: [...CAST, 'hits'], display: ['display'], reduce: ['reduce'],
+        hits: [...cast, 'hits'], display: ['display'], reduce: ['reduce'],
       }[name] ?? [];
       const precision = ['float', 'int', 'sampler2D', 'usampler2D'].map((type) => `precision highp ${type};\n`).join('');
       const head = `#version 300 es\n${precision}${GLSL}\n#define SMOOTH_RADIUS ${SMOOTH_RADIUS}\n#define SMOOTH_NEAR ${SMOOTH_NEAR}\n#define TEXEL_BITS ${texelBits(this.gl)}\n#define MOST_STEPS ${MOST_STEPS}\n#define INSTANCE_STEPS ${INSTANCE_STEPS}\n` +
           `#define CUT_ALBEDO vec3(${LIGHT.cutAlbedo})\n${SHOWS.map((show, i) => `#define SHOW_${show.toUpperCase()} ${i}\n`).join('')}` +
           `${TONES.map((tone, i) => `#define TONE_KIND_${tone.toUpperCase()} ${i}\n`).join('')}` +
           `${BACKGROUNDS.map((name, i) => `#define BACKGROUND_${name.toUpperCase()} ${i}\n`).join('')}` +
-          (look ? '#define HAS_LOOK\n' : '');
+          (look ? '#define HAS_LOOK\n' : '') + (hidden ? '#define HAS_HIDDEN\n' : '');
       const fragment = head + parts.map(text).join('\n');
       program = new Program(this.gl, `#version 300 es\n${text('quad.vert')}`, fragment, key);
       this.programs.set(key, program);
@@ -145,7 +153,8 @@ export class Renderer {
     gl.scissor(0, y, picture.width, end - picture.rows);
 
     const look = scene.look !== null && (settings.colors || settings.normals);
-    const sample = this.program('sample', look);
+    const hidden = hasHidden(shot);
+    const sample = this.program('sample', look, hidden);
     sample.use();
     this.setCast(sample, shot, picture);
     sample.floats({ u_cube_pixels: settings.cubes });
@@ -153,13 +162,13 @@ export class Renderer {
     sample.ints({ u_coarser_fits: shot.quick ? 0 : NORMAL.coarser });
     const sharing = scene.nodeInstances === null ? {} : { u_node_instances: scene.nodeInstances.texture, u_leaf_instances: /** @type {any} */ (scene.leafInstances).texture };
     sample.textures({ u_node_instances: scene.nodes.texture, u_leaf_instances: scene.nodes.texture, ...scene.walk(), ...sharing,
-                     ...(look ? scene.lookTextures(sample, settings) : {}) });
+                     ...(look || hidden ? scene.lookTextures(sample, settings) : {}), ...(hidden ? scene.hiddenTextures(sample, settings.hidden) : {}) });
     gl.bindFramebuffer(gl.FRAMEBUFFER, picture.viewTarget);
     drawAll(gl);
 
     const rays = this.raysPerSample(shot), index = shot.smoothed ?? picture.samples;
     this.prepareTables(rays.light * shot.samples, Math.max(1, rays.occlusion * shot.samples));
-    const light = this.program('light');
+    const light = this.program('light', false, hidden);
     light.use();
     this.setCast(light, shot, picture);
     this.setShade(light, shot);
@@ -169,7 +178,8 @@ export class Renderer {
       u_light_first: settings.sun.angle > 0 ? index * rays.light : 0, u_shadows: settings.shadows,
     });
     light.textures({ ...scene.walk(), u_start: picture.views[0], u_normal: picture.views[1], u_face: picture.views[2], u_sum: picture.sums[picture.current],
-                    u_disc: this.tables.textures[0], u_hemisphere: this.tables.textures[1], u_rotations: this.circle });
+                    u_disc: this.tables.textures[0], u_hemisphere: this.tables.textures[1], u_rotations: this.circle,
+                    ...(hidden ? { ...scene.lookTextures(light, NO_LOOK), ...scene.hiddenTextures(light, settings.hidden) } : {}) });
     gl.bindFramebuffer(gl.FRAMEBUFFER, picture.sumTargets[1 - picture.current]);
     drawAll(gl);
     gl.disable(gl.SCISSOR_TEST);
@@ -243,10 +253,11 @@ export class Renderer {
   hits(shot, width, height) {
     const { gl } = this;
     const texture = makeTexture(gl, gl.RGBA32UI, width, height), target = makeTarget(gl, [texture]);
-    const program = this.program('hits');
+    const hidden = hasHidden(shot), program = this.program('hits', false, hidden);
     program.use();
     this.setCast(program, shot, /** @type {any} */ ({ width, height, samples: 0 }));
-    program.textures(shot.scene.walk());
+    program.textures({ ...shot.scene.walk(),
+                      ...(hidden ? { ...shot.scene.lookTextures(program, NO_LOOK), ...shot.scene.hiddenTextures(program, shot.settings.hidden) } : {}) });
     gl.bindVertexArray(this.vertices);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
     gl.viewport(0, 0, width, height);

@@ -1,5 +1,6 @@
 /** The scene in textures of the graphics card. */
 import { DAG } from '../constants.js';
+import { idBits } from '../materials.js';
 import { LongTexture, mostTexels } from './long_texture.js';
 
 /** @typedef {import('../file/scene_loader.js').FileInfo} FileInfo */
@@ -25,12 +26,13 @@ export class SceneTextures {
     this.nodeInstances = null;
     /** @type {LongTexture | null} */
     this.leafInstances = null;
-    /** @type {{index: Attributes['index'], colorBits: number, normalBits: number, slots: LongTexture, values: (LongTexture | null)[]} | null} */
+    /** @type {{index: Attributes['index'], colorBits: number, normalBits: number, slots: LongTexture, values: (LongTexture | null)[],
+     *   materials: {count: number, words: LongTexture, pages: LongTexture} | null} | null} */
     this.look = null;
   }
 
   /** @param {Attributes} attributes */
-  setLook({ index, colors, normals }) {
+  setLook({ index, colors, normals, materials }) {
     const { gl } = this;
     const upload = (/** @type {Uint32Array} */ values) => {
       const texture = new LongTexture(gl, 'R32UI', values.length + 1);
@@ -40,6 +42,7 @@ export class SceneTextures {
     this.look = {
       index, colorBits: colors?.precision ?? -1, normalBits: normals?.precision ?? -1, slots: upload(index.words),
       values: [colors, normals].flatMap((v) => (v === null ? [null, null] : [upload(v.words), upload(v.begins)])),
+      materials: materials && { count: materials.materials, words: upload(materials.words), pages: upload(materials.begins) },
     };
   }
 
@@ -80,8 +83,31 @@ export class SceneTextures {
     return { u_slots: look.slots.texture, u_color_words: colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages };
   }
 
+  /**
+   * Sets the uniforms of materials.glsl and returns its textures.
+   * @param {import('./gl_tools.js').Program} program @param {readonly number[]} hidden  Ids.
+   * @returns {{[name: string]: WebGLTexture}}
+   */
+  hiddenTextures(program, hidden) {
+    const materials = this.look?.materials;
+    if (!materials) return {};
+    if (this.hiddenOf !== hidden) {
+      const flags = new Uint8Array(materials.count);
+      for (const id of hidden) if (id < flags.length) flags[id] = 1;
+      this.hidden ??= new LongTexture(this.gl, 'R8UI', flags.length);
+      this.hidden.set(0, flags);
+      this.hiddenOf = hidden;
+    }
+    program.ints({ u_material_bits: idBits(materials.count) });
+    return { u_material_words: materials.words.texture, u_material_pages: materials.pages.texture, u_hidden_materials: /** @type {LongTexture} */ (this.hidden).texture };
+  }
+  /** The ids that `hidden` holds. @type {readonly number[] | null} */
+  hiddenOf = null;
+  /** @type {LongTexture | null} */
+  hidden = null;
+
   bytes() {
-    const all = [this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
+    const all = [this.hidden, this.look?.materials?.words ?? null, this.look?.materials?.pages ?? null, this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
     return all.reduce((sum, texture) => sum + (texture?.bytes ?? 0), 0);
   }
 }

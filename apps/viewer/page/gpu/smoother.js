@@ -20,8 +20,8 @@ export const hasNoise = ({ settings: { show, occlusion, shadows } }) =>
   show === 'occlusion' ? occlusion.samples > 0 : show === 'light' && (occlusion.samples > 0 || shadows);
 
 /** Returns a text that differs if what sky and surfaces do to each other may. @param {Shot} shot */
-const stateOf = ({ settings: { occlusion, shadows, section, level, show, lod, cubes, ground, normals }, shown, scene }) =>
-  JSON.stringify([occlusion, shadows, section, level, show, lod, cubes, ground, normals, shown, scene.look !== null]);
+const stateOf = ({ settings: { occlusion, shadows, section, level, show, lod, cubes, ground, normals, hidden }, shown, scene }) =>
+  JSON.stringify([occlusion, shadows, section, level, show, lod, cubes, ground, normals, hidden, shown, scene.look !== null]);
 
 /** What pixels of one frame see, and where they are. */
 class SeenBuffers {

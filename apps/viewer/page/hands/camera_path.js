@@ -3,7 +3,7 @@
  * render/film/camera_path.cpp, so that a film shows what was played: centripetal Catmull-Rom curves for eye
  * and target (Yuksel, Schaefer and Keyser 2011), monotone cubics of time (Fritsch and Carlson 1980).
  */
-import { add, addScaled, scale, sub } from '../math.js';
+import { add, addScaled, clamp, normalized, rotated, scale, sub } from '../math.js';
 
 /**
  * @typedef {import('../math.js').Vec3} Vec3
@@ -120,6 +120,37 @@ export function withoutKey(keys, index) {
 export function withTime(keys, index, time) {
   const least = index > 0 ? keys[index - 1].time + 0.001 : -Infinity, shift = Math.max(time, least) - keys[index].time;
   return keys.map((key, i) => (i < index ? key : { ...key, time: Math.round((key.time + shift) * 1000) / 1000 }));
+}
+
+/**
+ * Returns the keys with one at another time, at least a millisecond from its neighbours, which stay.
+ * @param {PathKey[]} keys @param {number} index @param {number} time  Seconds. @returns {PathKey[]}
+ */
+export function withKeyAt(keys, index, time) {
+  const low = index > 0 ? keys[index - 1].time + 0.001 : -Infinity, high = keys[index + 1] ? keys[index + 1].time - 0.001 : Infinity;
+  return keys.map((key, i) => (i === index ? { ...key, time: Math.round(clamp(time, low, high) * 1000) / 1000 } : key));
+}
+
+/** Keys of a turn: their curve leaves the circle by less than a hundredth of its radius. */
+const TURN_KEYS = 20;
+
+/**
+ * Returns the keys of a whole turn around the camera's target, counterclockwise from above. The last key has the camera of
+ * the first.
+ * @param {Camera} camera @param {number} seconds @returns {PathKey[]}
+ */
+export function turntable({ eye, target, up, fov }, seconds) {
+  const arm = sub(eye, target), axis = normalized(up, [0, 1, 0]);
+  return Array.from({ length: TURN_KEYS + 1 }, (_, i) => ({
+    time: Math.round((1000 * seconds * i) / TURN_KEYS) / 1000, target, ...(i === 0 && { up, fov }),
+    eye: i === TURN_KEYS ? eye : add(target, rotated(arm, axis, (2 * Math.PI * i) / TURN_KEYS)),
+  }));
+}
+
+/** Returns the times of a film's frames, from the first key's to the last one's. @param {PathKey[]} keys @param {number} perSecond */
+export function frameTimes(keys, perSecond) {
+  const begin = keys[0].time, count = Math.floor((keys[keys.length - 1].time - begin) * perSecond + 1e-9) + 1;
+  return Array.from({ length: count }, (_, i) => begin + i / perSecond);
 }
 
 /**

@@ -1,13 +1,19 @@
-/** The panel "Camera path": records views as keys, plays them, and saves the file of `render --path`. */
-import { cameraAt, completeKeys, pathToJson, withKey, withTime, withoutKey } from '../hands/camera_path.js';
+/** The panel "Camera path": records views as keys, plays them, and saves the path and films of it. */
+import { cameraAt, completeKeys, turntable, withKey, withTime, withoutKey } from '../hands/camera_path.js';
 import { roundCamera } from '../hands/pose.js';
 import { button, group } from './controls.js';
-import { download, h, resize, say } from './dom.js';
+import { h, resize, say } from './dom.js';
+import { filmFiles } from './film_files.js';
+import { icon } from './icons.js';
+import { timeLine } from './time_line.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui
  * @typedef {import('../settings.js').Settings} Settings
  */
+
+/** Seconds of a turntable. */
+const TURN_SECONDS = 10;
 
 /** @param {Ui} ui */
 export function filmPanel(ui) {
@@ -22,9 +28,15 @@ export function filmPanel(ui) {
     viewer.set({ path: keys }, 'ui');
     ui.toast(`Key ${keys.length} at ${keys[keys.length - 1].time} s`);
   };
+  const turn = () => {
+    stop();
+    viewer.set({ path: turntable(camera(), TURN_SECONDS).map((key) => ({ ...key, eye: roundCamera({ ...viewer.camera(), eye: key.eye }).eye })) }, 'ui');
+    ui.toast(`A turn of ${TURN_SECONDS} s around the point in the middle`);
+  };
   const stop = () => {
     if (!began) return;
     began = 0;
+    line.show(null);
     ui.refresh();
   };
   const play = () => {
@@ -39,6 +51,7 @@ export function filmPanel(ui) {
       const time = start + Math.max(0, now - mine) / 1000;
       viewer.set({ camera: cameraAt(keys, time) }, 'film');
       say(clock, `${Math.min(time, end).toFixed(1)} s`);
+      line.show(Math.min(time, end));
       if (time < end) requestAnimationFrame(frame);
       else stop();
     };
@@ -47,12 +60,10 @@ export function filmPanel(ui) {
   };
   hands.on('gesture', stop);
 
+  const line = timeLine(ui, stop), files = filmFiles(ui, stop);
   const add = button('Add this view', record, { icon: 'add', primary: true, title: 'Key K', keys: 'K' });
-  const player = button('Play', play, { icon: 'play' });
-  const clock = h('output', { class: 'clock' });
-  const save = button('Save path', () => {
-    download(`${ui.name()}.path.json`, new Blob([pathToJson(viewer.get().path, viewer.get().sun.direction)], { type: 'application/json' }));
-  });
+  const turner = button('Turntable', turn, { icon: 'orbit', title: 'Replaces the path by a whole turn around the point in the middle' });
+  const player = button('', play), clock = h('output', { class: 'clock' });
   const clear = button('Clear', () => { stop(); viewer.set({ path: [] }, 'ui'); });
   const list = h('ol', { class: 'list keys' });
   const newItem = (/** @type {number} */ i) => {
@@ -70,23 +81,27 @@ export function filmPanel(ui) {
     return h('li', {}, go, time, h('span', {}, 's'),
       button(`Delete key ${i + 1}`, remove, { icon: 'trash', bare: true }));
   };
-  const acts = h('div', { class: 'buttons' }, player, save, clear, clock);
+  const acts = h('div', { class: 'buttons' }, player, clear, clock);
+  const film = group('', acts, line.element);
   return {
     element: h('div', {},
-      group('', add, h('div', { class: 'row' }, h('label', { for: seconds.id }, 'Seconds to the next key'), seconds)),
-      list, acts,
+      group('', h('div', { class: 'buttons' }, add, turner), h('div', { class: 'row' }, h('label', { for: seconds.id }, 'Seconds to the next key'), seconds)),
+      film, files.element,
       h('p', { class: 'hint' }, 'The saved path renders as a film in full quality:'),
-      ui.command('voxdag render scene.vdag --path scene.path.json -o frame_%04d.png')),
-    refresh(/** @type {Settings} */ { path }) {
-      say(player.lastChild ?? player, began ? 'Stop' : 'Play');
+      ui.command('voxdag render scene.vdag --path scene.path.json -o frame_%04d.png'), list),
+    refresh(/** @type {Settings} */ settings) {
+      const { path } = settings, name = began ? 'Stop' : 'Play';
+      if (player.textContent !== name) player.replaceChildren(icon(name.toLowerCase()), name);
       clock.hidden = !began;
-      acts.hidden = path.length === 0;
+      film.hidden = path.length === 0;
       player.disabled = path.length < 2;
       resize(list, path.length, newItem);
       path.forEach((key, i) => {
         const time = list.children[i].querySelector('input');
         if (time && time.valueAsNumber !== key.time) time.value = String(key.time);
       });
+      line.refresh();
+      files.refresh(settings);
     },
     record,
     play,

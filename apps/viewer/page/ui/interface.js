@@ -2,13 +2,16 @@
 import { DEFAULTS } from '../settings.js';
 import { settingsToHash } from '../settings_link.js';
 import { isTyping, movingKey } from '../hands/keys.js';
+import { comparePanel } from './compare_panel.js';
 import { button, segments } from './controls.js';
 import { copy, h } from './dom.js';
 import { acceptFiles } from './file_drop.js';
 import { filmPanel } from './film_panel.js';
 import { helpPanel } from './help_panel.js';
 import { icon } from './icons.js';
+import { makeJobs } from './job.js';
 import { lightPanel } from './light_panel.js';
+import { materialsPanel } from './materials_panel.js';
 import { measurePanel } from './measure_panel.js';
 import { notesPanel } from './notes_panel.js';
 import { Overlay } from './overlay.js';
@@ -43,8 +46,10 @@ import { SIDES, viewPanel } from './view_panel.js';
  * @property {Hands} hands
  * @property {Overlay} overlay
  * @property {(text: string, isError?: boolean, stays?: boolean) => void} toast
+ * @property {ReturnType<typeof makeJobs>} job  Runs long work, with its progress and a button that cancels it.
  * @property {(text: string) => void} announce  For screen readers only.
  * @property {(name: string) => void} open
+ * @property {() => Viewer | null} second  The viewer of the second scene, if there is one.
  * @property {() => void} refresh
  * @property {() => void} reset
  * @property {() => Camera} home
@@ -56,8 +61,8 @@ import { SIDES, viewPanel } from './view_panel.js';
 
 /** @type {[string, string, string?][]} */
 const PANELS = [
-  ['view', 'View'], ['light', 'Light'], ['section', 'Section', 'B'], ['measure', 'Measure', 'M'], ['notes', 'Notes', 'N'],
-  ['film', 'Camera path', 'K'], ['share', 'Save and share'], ['statistics', 'Statistics', 'I'], ['help', 'Help', 'H'],
+  ['view', 'View'], ['light', 'Light'], ['section', 'Section', 'B'], ['materials', 'Materials'], ['measure', 'Measure', 'M'], ['notes', 'Notes', 'N'],
+  ['film', 'Camera path', 'K'], ['compare', 'Compare'], ['share', 'Save and share'], ['statistics', 'Statistics', 'I'], ['help', 'Help', 'H'],
 ];
 
 /** Milliseconds between refreshes of numbers that change with every frame. */
@@ -94,8 +99,10 @@ export function createInterface(viewer, hands, container) {
   const ui = {
     viewer, hands, overlay,
     toast: (text, isError, stays) => status.toast(text, isError, stays),
+    job: makeJobs(container, (text, isError) => status.toast(text, isError)),
     announce: (text) => status.announce(text),
     open: (name) => { if (opened !== name) toggle(name); },
+    second: () => compare.second(),
     refresh: () => refresh(),
     reset() {
       endTool();
@@ -123,10 +130,10 @@ export function createInterface(viewer, hands, container) {
     }),
   };
 
-  const section = sectionPanel(ui), measure = measurePanel(ui), notes = notesPanel(ui), film = filmPanel(ui), share = sharePanel(ui);
+  const section = sectionPanel(ui), measure = measurePanel(ui), notes = notesPanel(ui), film = filmPanel(ui), share = sharePanel(ui), compare = comparePanel(ui);
   /** @type {{[name: string]: Panel}} */
   const panels = {
-    view: viewPanel(ui), light: lightPanel(ui), section, measure, notes, film, share, statistics: statisticsPanel(ui), help: helpPanel(),
+    view: viewPanel(ui), light: lightPanel(ui), section, measure, notes, film, compare, materials: materialsPanel(ui), share, statistics: statisticsPanel(ui), help: helpPanel(),
   };
   const readout = new Readout(ui, container);
 
@@ -238,7 +245,11 @@ export function createInterface(viewer, hands, container) {
     if (by !== 'hands' && by !== 'film') refresh();
     else if (opened && panels[opened].followsCamera) panels[opened].refresh(settings);
   });
+  const showOpeners = () => openers.get('materials')?.toggleAttribute('hidden', !viewer.info?.materials);
+  showOpeners();
+  viewer.on('look', () => refresh());
   viewer.on('info', () => {
+    showOpeners();
     overlay.redraw();
     refresh();
   });

@@ -1,6 +1,7 @@
 /** Shows the voxel under the pointer and its position, in a corner of the picture. */
 import { roundTo3, stepBelow } from '../math.js';
 import { copy, h, say } from './dom.js';
+import { materialName } from './materials_panel.js';
 import { lengthText } from './numbers.js';
 
 /**
@@ -54,7 +55,9 @@ export class Readout {
   #words(hit) {
     const { info } = this.ui.viewer, step = (info?.voxelSize ?? 1) * 0.1;
     const level = info && hit.level < info.levels ? ` · level ${hit.level}` : '';
-    return [`voxel ${hit.voxel.join(' ')}${level}`, hit.position.map((x) => lengthText(x, step)).join('  ')];
+    const id = info?.materials ? this.ui.viewer.material(hit) : null;
+    const material = info?.materials && id !== null ? ` · ${materialName(info.materials, id)}` : '';
+    return [`voxel ${hit.voxel.join(' ')}${level}${material}`, hit.position.map((x) => lengthText(x, step)).join('  ')];
   }
 
   /** @param {Hit | null} hit */

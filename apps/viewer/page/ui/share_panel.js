@@ -2,6 +2,7 @@
 import { SettingsError, mergeSettings, settingsFromJson, settingsToJson } from '../settings.js';
 import { button, choice, group } from './controls.js';
 import { copy, download, h } from './dom.js';
+import { embedCode, whyNotShared } from './link_reach.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui
@@ -31,22 +32,17 @@ export function sharePanel(ui) {
   const screenshot = async () => {
     const [width, height] = size === 'window' ? [undefined, undefined] : size.split('x').map(Number);
     picture.disabled = true;
-    ui.toast('Rendering the picture…', false, true);
-    try {
-      const blob = await viewer.capture({ width, height, samples: Number(samples) });
-      download(`${ui.name()}.png`, blob);
-      ui.toast('Saved as PNG');
-    } catch (error) {
-      ui.toast(`No picture: ${error instanceof Error ? error.message : error}`, true);
-    } finally {
-      picture.disabled = false;
-    }
+    const done = await ui.job('Picture', async (job) =>
+      download(`${ui.name()}.png`, await viewer.capture({ width, height, samples: Number(samples), ...job })));
+    if (done) ui.toast('Saved as PNG');
+    picture.disabled = false;
   };
-  const link = async () => {
-    const hash = ui.hash(), address = location.href.split('#')[0] + (hash ? '#' + hash : '');
-    const done = await copy(address);
-    ui.toast(!done ? 'The browser did not allow copying; the link is in the address bar'
-      : address.length > LONG_LINK ? 'Link copied. It is long: save the settings as a file instead, if it arrives cut' : 'Link copied');
+  /** Copies a text that is made of the page's address. @param {string} what @param {(address: string) => string} make */
+  const share = async (what, make) => {
+    const hash = ui.hash(), address = location.href.split('#')[0] + (hash ? '#' + hash : ''), why = whyNotShared(address);
+    if (!(await copy(make(address)))) return ui.toast('The browser did not allow copying; the link is in the address bar', true);
+    if (why) return ui.toast(`${what} copied, but others cannot open the link: ${why}`, true);
+    ui.toast(address.length > LONG_LINK ? `${what} copied. It is long: save the settings as a file instead, if it arrives cut` : `${what} copied`);
   };
   const save = () => {
     const text = settingsToJson({ ...viewer.get(), camera: viewer.camera() });
@@ -87,7 +83,10 @@ export function sharePanel(ui) {
   const picture = button('Save picture', screenshot, { icon: 'camera', primary: true, title: 'Key P', keys: 'P' });
   return {
     element: h('div', {},
-      group('Link', button('Copy link', link, { icon: 'link' }), h('p', { class: 'hint' },
+      group('Link', h('div', { class: 'buttons' }, button('Copy link', () => share('Link', (address) => address), { icon: 'link' }),
+        button('Copy embed code', () => share('Code', (address) => embedCode(address, viewer.info?.name || 'Scene')), {
+          icon: 'copy', title: 'HTML that shows this page in another one',
+        })), h('p', { class: 'hint' },
         'The address of this page always holds the view, the light, the section, measures and notes.')),
       group('Picture', sizes.element, qualities.element, picture),
       group('Settings', h('div', { class: 'buttons' }, button('Save', save), button('Load…', () => chooser.click())), chooser,

@@ -20,14 +20,17 @@ function parseCellIndex(bytes, levels) {
   return { finest, cells, width, words: asWords(bytes.slice(head)) };
 }
 
-/** @param {Uint8Array} bytes the chunk @param {string} id @param {number} cells */
-function parseValues(bytes, id, cells) {
+/**
+ * Reads the pages of a chunk. Its first number, `precision`, is less than `most`.
+ * @param {Uint8Array} bytes the chunk @param {string} id @param {number} cells @param {number} most
+ */
+function parsePages(bytes, id, cells, most) {
   const head = PAGES.headerBytes;
   if (bytes.length < head) throw brokenFile(`Chunk ${id} ends inside its header.`);
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
   const precision = view.getUint32(PAGES.precision, true);
   const values = readSize(view, PAGES.values, `The number of values in ${id}`), wordCount = readSize(view, PAGES.words, `The number of words in ${id}`);
-  if (precision >= PAGES.channelBits.length) throw brokenFile(`Chunk ${id} has the unknown precision ${precision}.`);
+  if (precision >= most) throw brokenFile(`Chunk ${id} begins with ${precision}; it must be less than ${most}.`);
   if (values !== cells) throw brokenFile(`Chunk ${id} has ${values} values for ${cells} cells.`);
   const pageCount = Math.ceil(values / PAGES.pageValues), groupCount = Math.ceil(pageCount / PAGES.groupPages);
   const wordsAt = head + 8 * groupCount, pagesAt = wordsAt + 8 * wordCount;
@@ -40,4 +43,13 @@ function parseValues(bytes, id, cells) {
     if (group + 65535 >= 2 ** 32 || begins[page] >= 8 * wordCount) throw brokenFile(`Page ${page} of ${id} begins behind the end of the pages.`);
   }
   return { precision, begins, words: asWords(bytes.slice(wordsAt, pagesAt)) };
+}
+
+/** Reads colours or normals. @param {Uint8Array} bytes the chunk @param {string} id @param {number} cells */
+const parseValues = (bytes, id, cells) => parsePages(bytes, id, cells, PAGES.channelBits.length);
+
+/** Reads the chunk MTID. @param {Uint8Array} bytes @param {number} cells */
+function parseMaterials(bytes, cells) {
+  const { precision, ...pages } = parsePages(bytes, 'MTID', cells, 65536);
+  return { materials: precision, ...pages };
 }

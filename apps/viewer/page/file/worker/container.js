@@ -116,11 +116,15 @@ async function readSceneInfo(source, head, chunks) {
     dagNodesPerLevel: list(counts.dag_nodes_per_level),
     fileBytes: source.size, isEmpty, words, leafBlocks, levelBegin,
     hasColors: (chunks.has('COLR') || chunks.has('WCOL')) && chunks.has('CIDX'),
+    materials: chunks.has('MTID') && chunks.has('CIDX') ? namesIn(parsed.attributes?.material?.names) : null,
     hasNormals: (chunks.has('NRML') || chunks.has('WNRM')) && chunks.has('CIDX'),
     up: ['x', 'y', 'z'].includes(parsed.up) ? parsed.up : null, home: homeIn(parsed.home), cubes: parsed.cubes === true,
     source: { name: String(parsed.source?.name ?? ''), vertices: Number(parsed.source?.vertices) || 0, triangles: Number(parsed.source?.triangles) || 0 },
   };
 }
+
+/** Returns the names of materials, by id. @param {any} names @returns {string[]} */
+const namesIn = (names) => (Array.isArray(names) ? names.map(String) : []);
 
 /** Returns the home view of the metadata, or null if it is no view. @param {any} home */
 function homeIn(home) {

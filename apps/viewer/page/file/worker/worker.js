@@ -104,9 +104,9 @@ async function loadValues(id, wireId, cells) {
   return wire.pages();
 }
 
-/** @param {{colors: boolean, normals: boolean}} wanted */
+/** @param {{colors: boolean, normals: boolean, materials: boolean}} wanted */
 async function loadAttributes(wanted) {
-  if (info.isEmpty || (!wanted.colors && !wanted.normals)) return;
+  if (info.isEmpty || (!wanted.colors && !wanted.normals && !wanted.materials)) return;
   const index = parseCellIndex(await readSlices(chunk('CIDX').offset, chunk('CIDX').length), info.levels);
   if (index.cells >= 2 ** 32) {
     send({ type: 'note', text: 'The colours have more than 4 G cells: the viewer cannot show them.' });
@@ -114,8 +114,9 @@ async function loadAttributes(wanted) {
   }
   const colors = wanted.colors ? await loadValues('COLR', 'WCOL', index.cells) : null;
   const normals = wanted.normals ? await loadValues('NRML', 'WNRM', index.cells) : null;
-  send({ type: 'attributes', index, colors, normals },
-       [index.words.buffer, ...[colors, normals].flatMap((v) => (v === null ? [] : [v.begins.buffer, v.words.buffer]))]);
+  const materials = wanted.materials ? parseMaterials(await readSlices(chunk('MTID').offset, chunk('MTID').length), index.cells) : null;
+  send({ type: 'attributes', index, colors, normals, materials },
+       [index.words.buffer, ...[colors, normals, materials].flatMap((v) => (v === null ? [] : [v.begins.buffer, v.words.buffer]))]);
 }
 
 /** @param {any} request */

@@ -34,16 +34,20 @@ bool castRay(GridRay ray, float stop_start, float stop_per_t, out CellHit hit) {
         hit.corner = corner;
         hit.level = level;
         hit.node = level == u_levels ? stack[level - 2] : node;
+#ifdef HAS_HIDDEN
+        if (!isLeftOut(cellOf(ray, hit), level))
+#endif
         return true;
+      } else {
+        stack[level - 1] = node;
+        node = childOf(node, level - 1, index);
+        mask = childMask(node, level);
+        --bit;
+        up = uvec3(greaterThan((o - uintBitsToFloat(corner | 1u << bit)) * inv, vec3(t)));
+        corner |= up << bit;
+        child = up.x | up.y << 1u | up.z << 2u;
+        continue;
       }
-      stack[level - 1] = node;
-      node = childOf(node, level - 1, index);
-      mask = childMask(node, level);
-      --bit;
-      up = uvec3(greaterThan((o - uintBitsToFloat(corner | 1u << bit)) * inv, vec3(t)));
-      corner |= up << bit;
-      child = up.x | up.y << 1u | up.z << 2u;
-      continue;
     }
     if (exit_t > ray.t_max) return false;
     t = exit_t;
