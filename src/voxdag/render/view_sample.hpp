@@ -11,6 +11,8 @@ namespace voxdag {
 struct SeenCell {
   Vec3i voxel{-1, -1, -1};  ///< Its lowest voxel.
   std::int32_t level = -1;  ///< -1: none.
+
+  friend bool operator==(const SeenCell&, const SeenCell&) = default;
 };
 
 /// The line along which a sample is seen, in world units: from the camera, or from a surface whose

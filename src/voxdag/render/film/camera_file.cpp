@@ -45,11 +45,7 @@ void check_rotation(const Pose& pose, const JsonPlace& place, const char* member
 Pose pose_of(const Json& json, const JsonPlace& place) {
   const char* member = nullptr;
   for (const char* name : {"camera_to_world", "transform_matrix", "world_to_camera"})
-    if (json.contains(name)) {
-      if (member != nullptr)
-        place.refuse(std::string("has both \"") + member + "\" and \"" + name + "\"");
-      member = name;
-    }
+    if (member == nullptr && json.contains(name)) member = name;
   if (member == nullptr)
     place.refuse(
         "has neither \"camera_to_world\" nor \"world_to_camera\" nor \"transform_matrix\"");

@@ -8,7 +8,7 @@ namespace voxdag {
 
 /// Reads a camera from a JSON file of at most 1 MiB. Its members:
 ///   "camera_to_world" (or "transform_matrix") or "world_to_camera": rows of a 4×4 or 3×4 matrix,
-///     a rotation and a translation;
+///     a rotation and a translation; the first of them counts;
 ///   "convention": "opengl" (the default: x right, y up, looks along -z) or "opencv" (x right, y
 ///     down, looks along z);
 ///   "fov_y_degrees", or "fl_y" or "intrinsics" (rows of a 3×3 matrix of pixels) with "height".
