@@ -47,10 +47,11 @@ export class SceneArrival {
   #resolve = () => {};
 
   /**
-   * Begins to load: from bytes, from an address, or else from the page itself or the file beside it.
-   * @param {string | undefined} url @param {ArrayBuffer | undefined} bytes
+   * Begins to load: from bytes, from an address, from a file of this computer, or else from the page itself or the file beside it.
+   * @param {{url?: string, bytes?: ArrayBuffer, file?: Blob}} from
    */
-  async open(url, bytes) {
+  async open({ url, bytes, file }) {
+    if (file !== undefined) return this.loader.open({ file });
     if (url === undefined && bytes === undefined) bytes = (await inlineScene()) ?? undefined;
     await this.loader.open(bytes !== undefined ? { bytes } : { url: url ?? 'scene.vdag' });
   }
@@ -64,6 +65,7 @@ export class SceneArrival {
   #take(message) {
     switch (message.type) {
       case 'info':
+        this.report('begin', message.settings);
         return this.#begin(message.info, message.bytes);
       case 'progress':
         this.bytesLoaded = message.bytes;
@@ -143,6 +145,8 @@ export class SceneArrival {
 
   close() {
     this.loader.close();
+    this.textures?.delete();
+    this.textures = null;
     this.end();
   }
 }

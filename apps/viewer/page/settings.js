@@ -77,6 +77,12 @@ export const DEFAULTS = {
   path: [],
 };
 
+/** Changes that remove what belongs to one scene: light and picture stay. @type {PartialSettings} */
+export const NO_PLACES = {
+  camera: null, sun: { direction: null }, occlusion: { distance: 0 }, level: null, section: { box: null, plane: null }, mode: 'orbit',
+  measures: [], annotations: [], path: [],
+};
+
 /** Returns from which size in pixels voxels look like cubes: of a file whose voxels are cubes always, unless the settings differ from the default. @param {Settings} settings @param {{cubes: boolean} | null} info */
 export const shownCubes = (settings, info) => (info?.cubes && settings.cubes === DEFAULTS.cubes ? 0 : settings.cubes);
 

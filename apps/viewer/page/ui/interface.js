@@ -4,7 +4,7 @@ import { settingsToHash } from '../settings_link.js';
 import { isTyping, movingKey } from '../hands/keys.js';
 import { button, segments } from './controls.js';
 import { copy, h } from './dom.js';
-import { acceptFiles } from './file_drop.js';
+import { acceptFiles, openFile } from './open_file.js';
 import { filmPanel } from './film_panel.js';
 import { helpPanel } from './help_panel.js';
 import { icon } from './icons.js';
@@ -230,7 +230,7 @@ export function createInterface(viewer, hands, container) {
   };
   window.addEventListener('keydown', onKey);
 
-  acceptFiles(container, (file) => share.load(file));
+  acceptFiles(container, (file) => openFile(ui, file));
 
   // Events of the viewer.
   viewer.on('settings', (settings, by) => {

@@ -12,6 +12,7 @@ export function keepLink(ui) {
   let timer = 0, written = location.hash.replace(/^#/, '');
   const write = () => {
     if (ui.hands.moved) return later();  // the camera still moves: frames are slow
+    if (viewer.file !== null) return;  // the address leads to another scene
     const hash = ui.hash();
     if (hash === written) return;
     written = hash;

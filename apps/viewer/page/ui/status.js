@@ -39,6 +39,7 @@ export class Status {
     viewer.on('info', () => this.#loading());
     for (const event of ['progress', 'level', 'still']) viewer.on(event, () => this.#loading());
     viewer.on('loaded', () => { this.isLoaded = true; this.#loading(); });
+    viewer.on('opened', () => { this.isLoaded = false; this.#mend(); });
     viewer.on('note', (text) => this.toast(text, true));
     viewer.on('error', (error) => this.fail(error));
     viewer.on('lost', () => this.fail({
