@@ -93,7 +93,7 @@ export class SceneArrival {
     const box = { low: origin, high: /** @type {Vec3} */ (origin.map((x) => x + side)) };
     this.info = {
       name: source.name, levels, resolution, origin, voxelSize, bounds: box, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, source,
-      view: this.#homeIn(box, info), home: info.home, cubes: info.cubes,
+      view: this.#homeIn(box, info), home: info.home, cubes: info.cubes, unit: info.unit,
     };
     this.bytesLoaded = bytes;
     this.report('info', this.info);

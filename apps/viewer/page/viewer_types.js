@@ -28,6 +28,7 @@
  * @property {{name?: string, vertices?: number, triangles?: number}} [source]
  * @property {Camera} view  The suggested view.
  * @property {(Camera & {sun?: Vec3}) | null} home  The view of the file, with a sun if it is an interior.
+ * @property {import('./settings.js').Unit | null} unit  Of world coordinates, if the file says it.
  * @property {boolean} cubes  Whether its voxels are cubes, not samples of smooth surfaces.
  *
  * @typedef {object} Statistics

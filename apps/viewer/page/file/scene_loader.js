@@ -16,7 +16,7 @@ const PARTS = ['source', 'blob_source', 'container', 'levels', 'attributes', 'wi
  *   levels: number, resolution: number, origin: [number, number, number], voxelSize: number, voxels: number,
  *   dagNodesPerLevel: number[], fileBytes: number, isEmpty: boolean,
  *   words: number, leafBlocks: number, levelBegin: number[], hasColors: boolean, hasNormals: boolean,
- *   up: 'x' | 'y' | 'z' | null, home: (import('../settings.js').Camera & {sun?: [number, number, number]}) | null, cubes: boolean,
+ *   up: 'x' | 'y' | 'z' | null, unit: import('../settings.js').Unit | null, home: (import('../settings.js').Camera & {sun?: [number, number, number]}) | null, cubes: boolean,
  *   source: {name: string, vertices: number, triangles: number}}} FileInfo
  */
 /** @typedef {{precision: number, begins: Uint32Array, words: Uint32Array}} ValuePages */

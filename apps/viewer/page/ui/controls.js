@@ -111,6 +111,19 @@ export function segments({ label, options, get, set, bare }) {
 }
 
 /**
+ * Makes a line of text.
+ * @param {{label: string, most: number, hint?: string, get: (settings: Settings) => string, set: (value: string) => void}} options  `most`: characters.
+ * @returns {Control}
+ */
+export function textField({ label, most, hint, get, set }) {
+  const id = newId(), input = h('input', { type: 'text', id, maxlength: most, on: { input: () => set(input.value) } });
+  return {
+    element: h('div', { class: 'row text' }, h('label', { for: id, title: hint }, label), input),
+    refresh(settings) { if (input.value !== get(settings)) input.value = get(settings); },
+  };
+}
+
+/**
  * Makes a button.
  * @param {string} label @param {() => void} act
  * @param {{icon?: string, bare?: boolean, primary?: boolean, title?: string, keys?: string}} [options]

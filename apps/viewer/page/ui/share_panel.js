@@ -1,6 +1,6 @@
 /** The panel "Save and share": the link, settings as a file, and pictures. */
 import { settingsToJson } from '../settings.js';
-import { button, choice, group } from './controls.js';
+import { button, choice, group, textField } from './controls.js';
 import { copy, download, h } from './dom.js';
 import { openFile } from './open_file.js';
 
@@ -53,6 +53,12 @@ export function sharePanel(ui) {
     const text = settingsToJson({ ...viewer.get(), camera: viewer.camera() });
     download(`${ui.name()}.settings.json`, new Blob([text], { type: 'application/json' }));
   };
+  const title = textField({
+    label: 'Title', most: 200, hint: 'Instead of the name of the scene', get: (s) => s.title, set: (value) => viewer.set({ title: value }, 'ui'),
+  });
+  const licence = textField({
+    label: 'Licence', most: 500, hint: 'Shown below the title', get: (s) => s.licence, set: (value) => viewer.set({ licence: value }, 'ui'),
+  });
   const chosen = () => {
     if (chooser.files?.[0]) openFile(ui, chooser.files[0]);
     chooser.value = '';
@@ -65,13 +71,15 @@ export function sharePanel(ui) {
   return {
     element: h('div', {},
       group('Link', button('Copy link', link, { icon: 'link' }), h('p', { class: 'hint' },
-        'The address of this page always holds the view, the light, the section, measures and notes.')),
+        'The address of this page always holds the view, the light, the section, measures and notes.'), title.element, licence.element),
       group('Picture', sizes.element, qualities.element, picture),
       group('Files', h('div', { class: 'buttons' }, button('Open…', () => chooser.click()), button('Save settings', save)), chooser,
         h('p', { class: 'hint' }, 'Opens a scene (.vdag), a page with a scene (.html), settings or a camera path (.json); or drop the file on the picture. It stays on this computer.'),
-        h('p', { class: 'hint' }, 'Saved settings give a still in full quality:'),
+        h('p', { class: 'hint' }, 'With saved settings you can make a page that shows this view first, and a still in full quality:'),
+        ui.command('voxdag export scene.vdag --view scene.settings.json --poster -o scene.html'),
         ui.command('voxdag render scene.vdag --view scene.settings.json -o still.png'))),
     refresh(/** @type {Settings} */ settings) {
+      for (const field of [title, licence]) field.refresh(settings);
       sizes.refresh(settings);
       qualities.refresh(settings);
     },

@@ -117,7 +117,7 @@ async function readSceneInfo(source, head, chunks) {
     fileBytes: source.size, isEmpty, words, leafBlocks, levelBegin,
     hasColors: (chunks.has('COLR') || chunks.has('WCOL')) && chunks.has('CIDX'),
     hasNormals: (chunks.has('NRML') || chunks.has('WNRM')) && chunks.has('CIDX'),
-    up: ['x', 'y', 'z'].includes(parsed.up) ? parsed.up : null, home: homeIn(parsed.home), cubes: parsed.cubes === true,
+    up: ['x', 'y', 'z'].includes(parsed.up) ? parsed.up : null, unit: ['mm', 'cm', 'm', 'in', 'ft'].includes(parsed.unit) ? parsed.unit : null, home: homeIn(parsed.home), cubes: parsed.cubes === true,
     source: { name: String(parsed.source?.name ?? ''), vertices: Number(parsed.source?.vertices) || 0, triangles: Number(parsed.source?.triangles) || 0 },
   };
 }
