@@ -109,15 +109,19 @@ export class SceneArrival {
     memory.add(message, textures);
     if (message.type === 'attributes') return this.report('look', {});
     info.bounds = bounds(memory.dag(), BOUNDS_LEVEL) ?? info.bounds;
+    if (memory.info.up === null && memory.shown <= 7) this.guessed = guessUp(memory.dag());
     info.view = this.#homeIn(info.bounds, memory.info);
     this.report('level', { level: memory.shown, levels: info.levels, bytes: this.bytesLoaded });
   }
 
   /** Returns the first view of the scene. Its up vector is that of the file, else it is guessed. @param {import('./hands/pose.js').Box} box @param {FileInfo} info */
   #homeIn(box, { up, home }) {
-    const { memory } = this;
-    if (up === null && memory !== null && memory.shown <= 7) this.guessed = guessUp(memory.dag());
     return homeView(box, this.aspect(), up === null ? this.guessed : axisNamed(up), home);
+  }
+
+  /** Frames the home view again, after the picture has another shape. */
+  fit() {
+    if (this.info !== null && this.memory !== null) this.info.view = this.#homeIn(this.info.bounds, this.memory.info);
   }
 
   /** Uploads how often nodes are used, unless the textures hold it: they follow each level from then on. */

@@ -257,6 +257,7 @@ class CanvasViewer extends Events {
     if (width === this.canvas.width && height === this.canvas.height) return;
     this.canvas.width = width;
     this.canvas.height = height;
+    this.arrival?.fit();
     this.pictures?.redraw();
     this.#touch(true);
     this.emit('resize', { width, height });

@@ -49,7 +49,7 @@ export class Hands extends Events {
     viewer.on('settings', this.onSettings);
     viewer.on('loaded', this.onLoaded);
     viewer.on('opened', this.onOpened);
-    for (const event of ['info', 'level', 'loaded']) viewer.on(event, this.onInfo);
+    for (const event of ['info', 'level', 'loaded', 'resize']) viewer.on(event, this.onInfo);
     this.#meet();
   }
   isLoaded = false;
@@ -211,7 +211,7 @@ export class Hands extends Events {
   destroy() {
     this.#listeners.end();
     cancelAnimationFrame(this.frameRequest);
-    for (const event of ['info', 'level', 'loaded']) this.viewer.off(event, this.onInfo);
+    for (const event of ['info', 'level', 'loaded', 'resize']) this.viewer.off(event, this.onInfo);
     this.viewer.off('settings', this.onSettings);
     this.viewer.off('loaded', this.onLoaded);
     this.viewer.off('opened', this.onOpened);

@@ -9,6 +9,7 @@ import { filmPanel } from './film_panel.js';
 import { helpPanel } from './help_panel.js';
 import { icon } from './icons.js';
 import { lightPanel } from './light_panel.js';
+import { nameOnLongPress } from './long_press.js';
 import { measurePanel } from './measure_panel.js';
 import { notesPanel } from './notes_panel.js';
 import { Overlay } from './overlay.js';
@@ -144,7 +145,7 @@ export function createInterface(viewer, hands, container, base = DEFAULTS) {
     const opener = h('button', {
       type: 'button', title: key ? `${label} (${key})` : label, 'aria-label': label, 'aria-expanded': 'false', 'aria-controls': 'panel',
       on: { click: () => toggle(name) },
-    }, icon(name));
+    }, icon(name), h('span', { class: 'wide-label' }, label));
     openers.set(name, opener);
     return opener;
   }));
@@ -168,9 +169,10 @@ export function createInterface(viewer, hands, container, base = DEFAULTS) {
     get: (s) => s.mode, set: (mode) => viewer.set({ mode }, 'ui'),
   });
   const bar = h('div', { class: 'modes' }, modes.element,
-    button('Home (R)', () => home(), { icon: 'home', bare: true }),
-    button('Frame (F)', () => hands.frame(), { icon: 'frame', bare: true }));
+    button('Home (R)', () => home(), { icon: 'home', bare: true, wide: true }),
+    button('Frame (F)', () => hands.frame(), { icon: 'frame', bare: true, wide: true }));
   container.append(bar, toolbar, panel);
+  nameOnLongPress(container, (name) => ui.toast(name));
 
   const home = () => {
     if (viewer.get().mode !== 'orbit') viewer.set({ mode: 'orbit' }, 'ui');

@@ -26,6 +26,7 @@ class Reader {
     const Json json = read_json_file(file_, {kMaxBytes, "a view"});
     RenderOptions& options = settings_.options;
     options.ground = true;
+    options.section.hatch = true;
     each_member(
         json, "",
         {{"version", [&](const Json& value) { check_version(value); }},
@@ -232,18 +233,16 @@ class Reader {
 
   void read_section(const Json& json) {
     SectionOptions& section = settings_.options.section;
-    bool hatched = false;
-    each_member(json, "section",
-                {{"box",
-                  [&](const Json& value) {
-                    if (!value.is_null()) section.box = read_box(value, "section.box");
-                  }},
-                 {"hatch", [&](const Json& value) { hatched = flag(value, "section.hatch"); }},
-                 {"plane", [&](const Json& value) {
-                    if (!value.is_null()) section.plane = read_plane(value, "section.plane");
-                  }}});
-    if (hatched && (section.box || section.plane))
-      ignore("section.hatch", "a picture shows cut faces without hatching");
+    each_member(
+        json, "section",
+        {{"box",
+          [&](const Json& value) {
+            if (!value.is_null()) section.box = read_box(value, "section.box");
+          }},
+         {"hatch", [&](const Json& value) { section.hatch = flag(value, "section.hatch"); }},
+         {"plane", [&](const Json& value) {
+            if (!value.is_null()) section.plane = read_plane(value, "section.plane");
+          }}});
   }
 
   void check_measure(const Json& json, const std::string& key) {
