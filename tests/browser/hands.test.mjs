@@ -240,14 +240,16 @@ describeInBrowsers('hands', (_, browser) => {
     await page.mouse.click(300, 320);
     await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent?.startsWith('Click the next corner'));
     await page.mouse.click(450, 330);
-    await new Promise((resolve) => setTimeout(resolve, 500));
+    await pause(600);
     await page.keyboard.down('Shift');
     await page.mouse.click(450, 400);
     await page.keyboard.up('Shift');
-    await new Promise((resolve) => setTimeout(resolve, 500));
     await page.focus('canvas');
-    await page.keyboard.press('Enter');
-    await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().measures.length === 1);
+    // Enter does nothing until there are three corners: a slow page takes the clicks later.
+    for (let tries = 0; tries < 60 && (await settings(page)).measures.length === 0; ++tries) {
+      await page.keyboard.press('Enter');
+      await pause(500);
+    }
     const [{ kind, points }] = (await settings(page)).measures;
     assert.deepEqual([kind, points.length], ['area', 3]);
     assert.equal(points[2].filter((/** @type {number} */ x, /** @type {number} */ i) => x === points[1][i]).length, 2, 'two coordinates stay');

@@ -35,8 +35,8 @@ for (const [width, height] of SIZES)
     });
     for (const panel of PANELS) {
       await page.evaluate((name) => {
-        const { ui } = /** @type {any} */ (window).voxdag;
-        if (name !== 'none') ui.open(name);
+        if (name !== 'none') /** @type {any} */ (window).voxdag.ui.open(name);
+        else /** @type {HTMLElement | null} */ (document.querySelector('.panel:not([hidden]) header button'))?.click();
       }, panel);
       // A picture of larger pixels is enough.
       await new Promise((resolve) => setTimeout(resolve, 1500));

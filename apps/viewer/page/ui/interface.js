@@ -132,7 +132,7 @@ export function createInterface(viewer, hands, container, base = DEFAULTS) {
     view: viewPanel(ui), light: lightPanel(ui), section, measure, notes, film, share, statistics: statisticsPanel(ui), help: helpPanel(),
   };
   const readout = new Readout(ui, container);
-  scaleBar(ui, container, () => opened === 'measure' || viewer.get().measures.length > 0);
+  scaleBar(ui, canvas.parentElement ?? container, () => opened === 'measure' || viewer.get().measures.length > 0);
 
   // Toolbar and panel.
   const title = h('h2', { id: 'panel-title' });
