@@ -41,7 +41,7 @@ export const heightOf = ([low, high], up) => Math.abs(dot(sub(high, low), up));
  */
 export function valueOf({ kind, points }, up) {
   if (kind === 'area') return polygonArea(points);
-  if (kind === 'angle') return points.length === 3 ? angleAt(points) : 0;
+  if (kind === 'angle') return points.length < 3 ? 0 : angleAt(points);
   return kind === 'height' ? heightOf(points, up) : pathLength(points);
 }
 

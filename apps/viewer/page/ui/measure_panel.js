@@ -38,7 +38,8 @@ export function measurePanel(ui) {
   /** Returns the value with its unit. @param {Measure} measure */
   const text = (measure) => {
     const value = valueOf(measure, up()), name = own() ? ' ' + unit() : '';
-    if (measure.kind === 'angle') return measure.points.length < 3 ? '' : `${value.toFixed(1)}°`;
+    if (measure.points.length < MEASURE_POINTS[measure.kind][0]) return '';
+    if (measure.kind === 'angle') return `${value.toFixed(1)}°`;
     if (measure.kind !== 'area') return lengthOf(value) + name;
     const square = unitFactor(own(), unit()) ** 2;
     return lengthText(value * square, Math.max(voxel() * 0.1 * Math.sqrt(value), voxel() ** 2 * 0.01) * square) + (name && name + '²');
