@@ -55,4 +55,28 @@ describeInBrowsers('files', (browserName, browser) => {
     assertNoComplaints(page);
     await page.close();
   });
+
+  it('begins with the settings that were baked into the page', async () => {
+    const camera = { eye: [30, 20, 40], target: [0, 3, 0], up: [0, 1, 0], fov: 50 };
+    const settings = path.join(folder, `baked-${browserName}.json`), baked = path.join(folder, `baked-${browserName}.html`);
+    fs.writeFileSync(settings, JSON.stringify({ camera, sky: 2, licence: 'CC BY 4.0', occlusion: { samples: 0 }, annotations: [{ text: '</script>', point: [0, 3, 0], camera }] }));
+    voxdag('export', build('courtyard', 64), '-o', baked, '-q', '--view', settings, '--title', 'A <castle>', '--poster');
+    const page = await open(browser(), pathToFileURL(baked).href, { width: 400, height: 300, ready: 'window.voxdag?.viewer?.info' });
+    await still(page);
+    const { hash, shown, title, header, posters } = await page.evaluate(() => {
+      const { viewer } = /** @type {any} */ (window).voxdag;
+      return { hash: location.hash, shown: viewer.get(), title: document.title, header: document.querySelector('.title')?.textContent, posters: document.querySelectorAll('.poster').length };
+    });
+    assert.deepEqual([hash, title, shown.sky, shown.annotations[0].text, posters], ['', 'A <castle>', 2, '</script>', 0]);
+    assert.deepEqual(shown.camera, camera);
+    assert.match(header ?? '', /^A <castle>.*CC BY 4\.0/);
+    // A link holds what differs from the page, also what it takes away.
+    await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.set({ sky: 1, annotations: [], camera: null }, 'ui'));
+    await page.waitForFunction(() => location.hash === '#eye=home&sky=1&note=none');
+    await page.reload();
+    await page.waitForFunction(() => /** @type {any} */ (window).voxdag?.viewer?.info);
+    assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.get().annotations), []);
+    assertNoComplaints(page);
+    await page.close();
+  });
 });

@@ -71,7 +71,11 @@ describeInBrowsers('layout', (name, browser) => {
   if (name === 'chromium')
     it('tells the name of an icon on a long press, without using it', async () => {
       const page = await load(844, 390);
-      const { x, y } = await page.$eval('button[aria-label="Light"]', (button) => button.getBoundingClientRect());
+      await page.setViewport({ width: 844, height: 390, hasTouch: true });
+      const { x, y } = await page.$eval('button[aria-label="Light"]', (button) => {
+        const { left: x, top: y } = button.getBoundingClientRect();
+        return { x, y };
+      });
       await page.touchscreen.touchStart(x + 10, y + 10);
       await page.waitForFunction(() => document.querySelector('.toast:not(.tool-hint):not([hidden])')?.textContent === 'Light');
       await page.touchscreen.touchEnd();
