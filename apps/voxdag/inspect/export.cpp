@@ -117,7 +117,7 @@ void add_page_options(const Command& command, ExportArguments& arguments) {
     options.push_back(option);
   options.push_back(command.flag("--poster", arguments.page_view.poster,
                                  "Render the first view, and show that picture until the page has "
-                                 "loaded the scene: about 30 KB"));
+                                 "loaded the scene: about 20 KB"));
   for (const Option& option : options)
     option.in_group("Options for pages only (.html, FOLDER/)")
         .only_if([&arguments] { return arguments.is_page(); },
