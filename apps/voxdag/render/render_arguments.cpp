@@ -139,6 +139,7 @@ void apply_view_file(RenderArguments& arguments, Session& session) {
   take("--lod", options.lod_pixels, saved.lod_pixels);
   take("--section-box", options.section.box, saved.section.box);
   take("--section-plane", options.section.plane, saved.section.plane);
+  options.section.hatch = saved.section.hatch;
   take("--cubes", options.cube_pixels, saved.cube_pixels);
   if (!arguments.mesh.file.empty() && (options.section.box || options.section.plane))
     throw Error(view.file, "", "\"section\" cannot cut the triangles of --mesh: set it to null");

@@ -277,11 +277,14 @@ void add_filter_options(const Command& command, RenderArguments& arguments) {
 void add_section_options(const Command& command, RenderArguments& arguments) {
   const auto has_no_mesh = [&arguments] { return arguments.mesh.file.empty(); };
   SectionOptions& section = arguments.options.section;
+  section.hatch = true;  // As in the page.
   Winners& winners = arguments.view.winners;
-  winners.push_back(command
-                        .parsed("--section-box", section.box, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
-                                "Show only what is in this box, in world units; not with --mesh")
-                        .only_if(has_no_mesh, "with --mesh"));
+  winners.push_back(
+      command
+          .parsed("--section-box", section.box, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
+                  "Show only what is in this box, in world units; not with --mesh. Cut "
+                  "faces are hatched, unless --view says \"hatch\": false")
+          .only_if(has_no_mesh, "with --mesh"));
   winners.push_back(command
                         .parsed("--section-plane", section.plane, parse_plane, "PX,PY,PZ,NX,NY,NZ",
                                 "Remove the side of the plane through the point P to which the "

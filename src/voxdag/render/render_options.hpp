@@ -38,6 +38,7 @@ struct SectionOptions {
     Vec3d point, normal;  ///< The normal is not zero.
   };
   std::optional<Plane> plane;
+  bool hatch = false;  ///< Draw lines on the surfaces where the section cuts voxels.
 };
 
 /// The background of a picture, where it shows no surface. Only the colours of the sky depend on

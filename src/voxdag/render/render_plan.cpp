@@ -9,6 +9,7 @@
 #include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/render/coarse_cells.hpp"
 #include "voxdag/render/exposure.hpp"
+#include "voxdag/render/hatch.hpp"
 #include "voxdag/render/tone_map.hpp"
 
 namespace voxdag {
@@ -221,6 +222,10 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
   settings.lod_pixels = options.lod_pixels;
   settings.cube_pixels = options.cube_pixels;
   settings.beams = options.beams;
+  if (options.section.hatch && setup_.section.is_on)
+    settings.hatch_period =
+        hatch_period(setup_.camera.pixel_size() * options.height *
+                     length(image_.view.target - image_.view.eye) / setup_.side());
   settings.albedo = options.albedo;
   settings.specular = options.specular;
 

@@ -36,7 +36,8 @@ struct RenderSettings {
   /// Cells of at least this many pixels are shaded as cubes, cells of at most half as many as a
   /// smooth surface; 0 means always cubes.
   float cube_pixels = 24;
-  bool beams = true;  ///< Shorten rays by beams. The picture does not depend on it.
+  float hatch_period = 0;  ///< Of the lines on cut faces, in grid sides; 0: none. See hatch.hpp.
+  bool beams = true;       ///< Shorten rays by beams. The picture does not depend on it.
   Vec3f albedo{0.62f, 0.60f, 0.57f};
   Specular specular;
 };

@@ -1,5 +1,6 @@
 #pragma once
 /// The primary rays of a tile, and what they show of the voxels of a DAG.
+#include "voxdag/render/hatch.hpp"
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/render/stored_look.hpp"
 #include "voxdag/render/surface_normal.hpp"
@@ -93,6 +94,10 @@ VOXDAG_HD inline ViewSample cut_view_sample(const RenderSetup& setup, Vec3d dire
   sample.depth = static_cast<float>(depth);
   sample.cell_size = static_cast<float>(setup.grid.cell_size(level));
   sample.point = setup.camera.eye + direction * depth;
+  const float hatch = setup.settings.hatch_period;
+  if (hatch > 0 &&
+      is_hatched((sample.point - setup.grid.origin) * (1 / setup.side()), normal, hatch))
+    sample.albedo = kCutAlbedo * kHatchShade;
   return sample;
 }
 

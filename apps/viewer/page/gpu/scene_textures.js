@@ -80,8 +80,13 @@ export class SceneTextures {
     return { u_slots: look.slots.texture, u_color_words: colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages };
   }
 
+  #all() {
+    return [this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
+  }
   bytes() {
-    const all = [this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
-    return all.reduce((sum, texture) => sum + (texture?.bytes ?? 0), 0);
+    return this.#all().reduce((sum, texture) => sum + (texture?.bytes ?? 0), 0);
+  }
+  delete() {
+    for (const texture of this.#all()) if (texture) this.gl.deleteTexture(texture.texture);
   }
 }
