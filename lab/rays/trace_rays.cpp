@@ -162,7 +162,7 @@ void record_tile(const Nodes& nodes, const RenderSetup& plain, const RenderSetup
     scratch.points[pixel] = {};
     if (sample.is_hit())
       scratch.points[pixel] =
-          make_surface_point(nodes, plain, sample, pixel_direction(plain, tile, pixel));
+          make_surface_point(nodes, plain, sample, pixel_line(plain, tile, pixel));
   }
   if (c == RayClass::kAo)
     trace_occlusion(record, plain, tile, scratch);

@@ -39,7 +39,7 @@ std::vector<TileSurface> find_surfaces(const Nodes& nodes, const Caster& caster,
     for (int pixel = 0; pixel < tile.pixels(); ++pixel)
       if (const ViewSample& sample = scratch.samples[pixel]; sample.is_hit())
         surfaces[i].points[static_cast<std::size_t>(pixel)] =
-            make_surface_point(nodes, setup, sample, pixel_direction(setup, tile, pixel));
+            make_surface_point(nodes, setup, sample, pixel_line(setup, tile, pixel));
   });
   return surfaces;
 }

@@ -223,18 +223,36 @@ describeInBrowsers('hands', (_, browser) => {
     await page.keyboard.press('m');
     const [a, b] = [await pick(page, 300, 320), await pick(page, 450, 330)];
     await page.mouse.click(300, 320);
-    await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent === 'Click the second point');
+    await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent?.startsWith('Click the second point'));
     await page.mouse.click(450, 330);
     await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().measures.length === 1);
-    const [measure] = (await settings(page)).measures;
+    const [{ points: [from, to] }] = (await settings(page)).measures;
     const voxel = await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.info.voxelSize);
-    assert.ok(apart(measure.from, a.position) < 0.01 * voxel && apart(measure.to, b.position) < 0.01 * voxel);
+    assert.ok(apart(from, a.position) < 0.01 * voxel && apart(to, b.position) < 0.01 * voxel);
     await drawn(page);
-    const text = await page.$eval('.measure .label', (label) => Number(label.textContent));
-    assert.ok(Math.abs(text - apart(measure.from, measure.to)) < 0.1 * voxel, 'the label says the distance');
+    const text = await page.$eval('.measure .label', (label) => parseFloat(label.textContent));
+    assert.ok(Math.abs(text - apart(from, to)) < 0.1 * voxel, 'the label says the distance');
     await page.keyboard.press('Escape');
     await page.click('[aria-label="Delete measure 1"]');
     assert.equal((await settings(page)).measures.length, 0);
+    // An area: three corners, the last by a click with Shift, which keeps to an axis; Enter closes it.
+    await page.select('.panel select', 'area');
+    await page.mouse.click(300, 320);
+    await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent?.startsWith('Click the next corner'));
+    await page.mouse.click(450, 330);
+    await pause(600);
+    await page.keyboard.down('Shift');
+    await page.mouse.click(400, 326);
+    await page.keyboard.up('Shift');
+    await page.focus('canvas');
+    // Enter does nothing until there are three corners: a slow page takes the clicks later.
+    for (let tries = 0; tries < 60 && (await settings(page)).measures.length === 0; ++tries) {
+      await page.keyboard.press('Enter');
+      await pause(500);
+    }
+    const [{ kind, points }] = (await settings(page)).measures;
+    assert.deepEqual([kind, points.length], ['area', 3]);
+    assert.equal(points[2].filter((/** @type {number} */ x, /** @type {number} */ i) => x === points[1][i]).length, 2, 'two coordinates stay');
     assertNoComplaints(page);
     await page.close();
   });
@@ -279,9 +297,15 @@ describeInBrowsers('hands', (_, browser) => {
     await page.keyboard.press('n');
     await page.mouse.click(400, 330);
     await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().annotations.length === 1);
-    await page.keyboard.type('The gate');
-    assert.equal((await settings(page)).annotations[0].text, 'The gate');
-    await page.keyboard.press('Escape');
+    await page.keyboard.type('The [gate](gate.html) <img src=x onerror=alert(1)>');
+    await page.keyboard.down('Shift');
+    await page.keyboard.press('Enter');
+    await page.keyboard.up('Shift');
+    await page.keyboard.type('[x](javascript:alert)');
+    await page.keyboard.press('Enter');
+    assert.equal((await settings(page)).annotations[0].text, 'The [gate](gate.html) <img src=x onerror=alert(1)>\n[x](javascript:alert)');
+    assert.equal(await page.$eval('.note-text', (text) => text.innerHTML),
+      'The <a href="gate.html" target="_blank" rel="noopener noreferrer">gate</a> &lt;img src=x onerror=alert(1)&gt;\n[x](javascript:alert)');
     await page.keyboard.press('k');
     await page.keyboard.press('2');
     await rest(page);

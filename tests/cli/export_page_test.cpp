@@ -46,6 +46,47 @@ TEST_F(ExportPage, LevelsKeepTheColours) {
   EXPECT_NE(run_voxdag({"info", coarse, "--json"}).out.find("\"color\""), std::string::npos);
 }
 
+TEST_F(ExportPage, AViewATitleAndAPosterAreBakedIn) {
+  const std::string view = dir_ / "view.json";
+  write_text(view, R"({"sky": 2, "annotations": [{"text": "</script><b>", "point": [0, 0, 0],
+    "camera": {"eye": [0, 0, 1], "target": [0, 0, 0]}}]})");
+  const auto exported = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"export", small_, "-o", dir_ / "a.html", "-q"});
+    const ProcessResult result = run_voxdag(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_text(dir_ / "a.html");
+  };
+  const std::string plain = exported({}),
+                    baked = exported({"--view", view, "--title", "A & <B>", "--poster"});
+  EXPECT_NE(baked.find("<title>A &amp; &lt;B></title>"), std::string::npos);
+  EXPECT_NE(baked.find(R"("sky":2,"title":"A & \u003cB>")"), std::string::npos);
+  EXPECT_NE(baked.find(R"("text":"\u003c/script>\u003cb>")"), std::string::npos);
+  EXPECT_NE(baked.find("<img class=\"poster\" alt=\"\" src=\"data:image/jpeg;base64,/9j/"),
+            std::string::npos);
+  EXPECT_EQ(plain.find("class=\"poster\""), std::string::npos);
+  EXPECT_LT(baked.size(), plain.size() + 100'000);
+  EXPECT_EQ(baked, exported({"--view", view, "--title", "A & <B>", "--poster"}));
+  ASSERT_EQ(run_voxdag({"export", small_, "-o", dir_ / "site/", "--view", view}).status, 0);
+  EXPECT_NE(read_text(dir_ / "site/index.html").find(R"("sky":2)"), std::string::npos);
+}
+
+TEST_F(ExportPage, AWrongViewIsRefused) {
+  const std::string view = dir_ / "view.json";
+  const auto expect_refused = [&](const std::string& json, const std::string& reason) {
+    write_text(view, json);
+    expect_failure(run_voxdag({"export", small_, "-o", dir_ / "a.html", "--view", view}), 1,
+                   view + ": " + reason);
+    expect_failure(run_voxdag({"view", small_, "--no-open", "--view", view}), 1,
+                   view + ": " + reason);
+  };
+  expect_refused(R"({"sun": {"size": 1}})", "\"sun.size\" is an unknown key");
+  expect_refused(R"({"sky": "blue"})", "\"sky\" is not a number");
+  expect_refused(R"({"measures": [{}]})", "\"measures[0].from\" is missing");
+  expect_refused("{\"sky\": }", "byte 9");
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "a.html"));
+  expect_failure(run_voxdag({"export", small_, "-o", dir_ / "a.ply", "--poster"}), 2, "--poster");
+}
+
 TEST_F(ExportPage, WrongOutputsAreRefused) {
   expect_failure(run_voxdag({"export", plain_, "-o", dir_.path()}), 2, "is the folder of");
   expect_failure(run_voxdag({"export", plain_, "-o", dir_ / "no/site/"}), 1, "cannot create");

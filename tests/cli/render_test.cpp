@@ -4,6 +4,7 @@
 #include "npy_rays.hpp"
 #include "sponge.hpp"
 #include "support/read_pictures.hpp"
+#include "voxdag/image/exr.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -24,8 +25,8 @@ TEST_F(RenderCommand, WritesPngAndExr) {
 TEST_F(RenderCommand, WritesEveryPassInBothFormats) {
   std::vector<std::string> words = {"render", path("in.vdag"), "-o",   path("p.exr"),
                                     "--size", "40x30",         "--ao", "4"};
-  const std::vector<std::string> names = {"picture",   "radiance", "depth", "normal",
-                                          "occlusion", "shadow",   "steps", "steps64"};
+  const std::vector<std::string> names = {"picture", "radiance", "depth",   "normal", "occlusion",
+                                          "shadow",  "steps",    "steps64", "albedo", "voxel"};
   for (const std::string& name : names)
     for (const char* extension : {".png", ".exr"}) {
       words.push_back("--pass");
@@ -109,6 +110,53 @@ TEST_F(RenderCommand, TakesTheViewThatItPrints) {
   EXPECT_EQ(read_text(path("first.png")), read_text(path("second.png")));
 }
 
+TEST_F(RenderCommand, TakesTheCameraThatItWrites) {
+  const auto render = [&](std::vector<std::string> options, const std::string& name) {
+    options.insert(options.begin(), {"render", path("in.vdag"), "-o", path(name), "--size", "64x36",
+                                     "--pass", "voxel=" + path(name + ".exr")});
+    return run_voxdag(options);
+  };
+  const ProcessResult first = render({"--write-camera", path("c.json")}, "first.png");
+  ASSERT_EQ(first.status, 0) << first.err;
+  const ProcessResult second = render({"--camera-matrix", path("c.json")}, "second.png");
+  ASSERT_EQ(second.status, 0) << second.err;
+  EXPECT_EQ(read_exr(path("first.png.exr")).image, read_exr(path("second.png.exr")).image);
+  expect_failure(render({"--camera-matrix", path("c.json"), "--eye", "1,2,3"}, "bad.png"), 2,
+                 "--camera-matrix");
+  write_text(path("c.json"), "{}");
+  expect_failure(render({"--camera-matrix", path("c.json")}, "bad.png"), 1, "c.json");
+}
+
+TEST_F(RenderCommand, AnEnvironmentLightsThePicture) {
+  const auto render = [&](const std::string& environment, const std::string& name) {
+    return run_voxdag({"render", path("in.vdag"), "-o", path(name), "--size", "64x36", "--ao", "4",
+                       "--background", "black", "--environment", environment});
+  };
+  ImageF red(64, 32, 3);
+  for (std::size_t i = 0; i < red.pixels.size(); i += 3) red.pixels[i] = 5;
+  write_exr(path("red.exr"), red, {"R", "G", "B"});
+  const ProcessResult result = render(path("red.exr"), "red.png");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const ImageRgb8 picture = read_rgb8(path("red.png"));
+  int lit = 0;
+  for (std::size_t i = 0; i < picture.pixels.size(); i += 3) {
+    lit += picture.pixels[i] > 60 ? 1 : 0;
+    EXPECT_LE(picture.pixels[i + 1], picture.pixels[i] / 2 + 2);
+  }
+  EXPECT_GT(lit, 50);
+  EXPECT_EQ(render("studio", "studio.png").status, 0);
+  expect_failure(render(path("none.hdr"), "bad.png"), 1, "none.hdr");
+  expect_failure(render(path("in.vdag"), "bad.png"), 1, "neither a Radiance HDR nor an OpenEXR");
+}
+
+TEST_F(RenderCommand, PathsAndMaterialsAreRefusedWhereThereAreNone) {
+  const std::string in = path("in.vdag"), out = path("bad.png");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--bounces", "1", "--ao", "0"}), 2,
+                 "--bounces");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "material=" + path("m.png")}), 1,
+                 "material ids");
+}
+
 TEST_F(RenderCommand, RefusesWhatMakesNoPicture) {
   const std::string in = path("in.vdag"), out = path("bad.png");
   expect_failure(run_voxdag({"render", in, "-o", path("bad.jpg")}), 2, ".png or .exr");
@@ -119,7 +167,7 @@ TEST_F(RenderCommand, RefusesWhatMakesNoPicture) {
   write_text(path("bad.ply"), "ply\nformat ascii 1.0\n");
   expect_failure(run_voxdag({"render", path("bad.ply"), "-o", out}), 1, "bad.ply");
   expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "depth"}), 2, "NAME=FILE");
-  expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "albedo=a.png"}), 2, "not one of");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "colour=a.png"}), 2, "not one of");
   expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "depth=z.tif"}), 2, ".png or .exr");
   expect_failure(run_voxdag({"render", in, "-o", out, "--light", "tube:1,2,3"}), 2, "sphere:");
   expect_failure(run_voxdag({"render", in, "-o", out, "--light", "sphere:1,2,3"}), 2, "4 numbers");

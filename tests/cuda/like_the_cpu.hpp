@@ -32,6 +32,8 @@ inline void expect_pixels_like(const RenderedImage& image, const RenderedImage& 
   expect_near(image.shadow, expected.shadow);
   EXPECT_EQ(wrong, 0u) << "of " << expected.rgb.size() << " pixels";
   EXPECT_EQ(image.depth, expected.depth);
+  EXPECT_EQ(image.albedo, expected.albedo);
+  EXPECT_EQ(image.cells, expected.cells);
 }
 
 }  // namespace voxdag

@@ -92,6 +92,12 @@ inline std::vector<Picture> pictures(int scale) {
   section.lod_pixels = 2;
   RenderOptions& colors = add("colours and depth alone");
   colors.with_normal = colors.with_occlusion = colors.with_shadow = false;
+  RenderOptions& paths = add("paths under an environment");
+  paths.bounces = 2;
+  paths.environment = std::make_shared<Environment>(built_in_environment("sunset"));
+  paths.samples_per_pixel = 2;
+  paths.shadow_samples = 2 * kShadowRaysWithBeams;
+  paths.with_albedo = paths.with_cells = true;
   RenderOptions& steps = add("steps");
   steps.with_steps = true;
   steps.view.eye = {0.1, -0.6, -0.4};

@@ -55,9 +55,9 @@ RenderedImage render_as_device(const VoxelSet& scene, const Nodes& nodes, const 
     if (source != nullptr) samples = samples_of(*source, setup, *range);
     for (std::uint32_t block = range->first_block; block < range->last_block; ++block)
       for (std::uint32_t thread = 0; thread < kBlockPixels; ++thread)
-        plan.image().rays +=
-            render_pixel(nodes, caster, setup, *range, source == nullptr ? nullptr : samples.data(),
-                         block, thread);
+        plan.image().rays += render_pixel<TileScratch<1, PathScratch<1>>>(
+            nodes, caster, setup, *range, source == nullptr ? nullptr : samples.data(), block,
+            thread);
   }
   return plan.finish();
 }

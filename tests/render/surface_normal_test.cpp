@@ -42,8 +42,9 @@ TEST(SurfaceNormal, IsWithinAFewDegreesOnPlanes) {
         const Vec3i m = v - Vec3i{32, 32, 32};
         if (dot(m, m) > 200) continue;
         const Vec3f estimate =
-            surface_normal(SvdagNodes(dag.view()), kLevels, v, static_cast<Vec3f>(normalized(view)),
-                           static_cast<Vec3f>(normalized(view)));
+            smooth_surface(SvdagNodes(dag.view()), kLevels, v, static_cast<Vec3f>(normalized(view)),
+                           static_cast<Vec3f>(normalized(view)))
+                .normal;
         ASSERT_LT(degrees_between(estimate, unit), 4) << normal.x << ' ' << normal.y;
       }
   }
@@ -57,13 +58,18 @@ TEST(SurfaceNormal, FollowsTheRadiusOfASphere) {
   double sum = 0;
   for (const Vec3i v : voxels) {
     const Vec3d radial = normalized(static_cast<Vec3d>(v) + Vec3d{0.5, 0.5, 0.5} - centre);
-    const Vec3f estimate = surface_normal(SvdagNodes(dag.view()), kLevels, v,
-                                          static_cast<Vec3f>(radial), static_cast<Vec3f>(radial));
-    const double error = degrees_between(estimate, radial);
+    const SmoothSurface surface = smooth_surface(
+        SvdagNodes(dag.view()), kLevels, v, static_cast<Vec3f>(radial), static_cast<Vec3f>(radial));
+    const double error = degrees_between(surface.normal, radial);
     // On a sphere of radius 25, the surface within 4.5 cells of a cell turns by up to 10 degrees to
     // each side.
     ASSERT_LT(error, 10);
     sum += error;
+    // The sphere bends away below the layer's mean.
+    const Vec3d from_centre = static_cast<Vec3d>(v) + Vec3d{0.5, 0.5, 0.5} - centre;
+    ASSERT_NEAR(std::sqrt(dot(from_centre, from_centre)) + static_cast<double>(surface.height), 25,
+                0.6);
+    ASSERT_GT(surface.is_flat, 0.9f);
   }
   EXPECT_LT(sum / static_cast<double>(voxels.size()), 2.5);
 }
@@ -72,8 +78,9 @@ TEST(SurfaceNormal, FacesTheViewerFromBothSides) {
   const auto voxels = surface_voxels([](Vec3d p) { return p.y - 32.5; });
   const Svdag dag = brute_svdag(kLevels, voxels);
   for (const float side : {1.0f, -1.0f}) {
-    const Vec3f n = surface_normal(SvdagNodes(dag.view()), kLevels, {20, 32, 20},
-                                   normalized(Vec3f{0.8f, side, 0}), {0, side, 0});
+    const Vec3f n = smooth_surface(SvdagNodes(dag.view()), kLevels, {20, 32, 20},
+                                   normalized(Vec3f{0.8f, side, 0}), {0, side, 0})
+                        .normal;
     EXPECT_NEAR(n.y, side, 1e-4f);
   }
 }
@@ -81,7 +88,7 @@ TEST(SurfaceNormal, FacesTheViewerFromBothSides) {
 TEST(SurfaceNormal, IsTheViewDirectionAtALoneVoxel) {
   const Svdag dag = brute_svdag(kLevels, {{5, 6, 7}});
   const Vec3f view = normalized(Vec3f{1, 2, -3});
-  const Vec3f n = surface_normal(SvdagNodes(dag.view()), kLevels, {5, 6, 7}, view, view);
+  const Vec3f n = smooth_surface(SvdagNodes(dag.view()), kLevels, {5, 6, 7}, view, view).normal;
   EXPECT_GT(dot(n, view), 0.9999f);
 }
 
@@ -89,8 +96,9 @@ TEST(SurfaceNormal, ReadsCoarserLevels) {
   const Vec3d unit = normalized(Vec3d{1, 2, 2});
   const auto voxels = surface_voxels([&](Vec3d p) { return dot(p - Vec3d{32, 32, 32}, unit); });
   const Svdag dag = brute_svdag(kLevels, voxels);
-  const Vec3f n = surface_normal(SvdagNodes(dag.view()), 5, {16, 16, 16}, static_cast<Vec3f>(unit),
-                                 static_cast<Vec3f>(unit));
+  const Vec3f n = smooth_surface(SvdagNodes(dag.view()), 5, {16, 16, 16}, static_cast<Vec3f>(unit),
+                                 static_cast<Vec3f>(unit))
+                      .normal;
   EXPECT_LT(degrees_between(n, unit), 6);
 }
 

@@ -27,6 +27,8 @@ inline void expect_same_picture(const RenderedImage& image, const RenderedImage&
   EXPECT_EQ(image.normal, expected.normal);
   EXPECT_EQ(image.occlusion, expected.occlusion);
   EXPECT_EQ(image.shadow, expected.shadow);
+  EXPECT_EQ(image.albedo, expected.albedo);
+  EXPECT_EQ(image.cells, expected.cells);
 }
 
 }  // namespace voxdag::test

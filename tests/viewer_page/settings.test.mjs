@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import {
-  BACKGROUNDS, DEFAULTS, MODES, SHOWS, TONES, SettingsError, mergeSettings, settingsFromJson, settingsToJson,
+  BACKGROUNDS, DEFAULTS, MEASURE_POINTS, MODES, SHOWS, TONES, UNITS, SettingsError, mergeSettings, settingsFromJson, settingsToJson,
 } from '../../apps/viewer/page/settings.js';
 import { settingsFromHash, settingsToHash } from '../../apps/viewer/page/settings_link.js';
 import { randomNumbers } from './random.mjs';
@@ -27,8 +27,12 @@ function randomSettings(seed) {
     occlusion: { samples: Math.floor(random() * 256), distance: random() * scale, cone: random() },
     lod: random() * 4, cubes: random() * 100, level: maybe(() => Math.floor(random() * 20)),
     colors: random() < 0.5, normals: random() < 0.5, hidden: list((i) => 3 * i), show: pick(SHOWS), mode: pick(MODES),
-    section: { box: maybe(box), plane: maybe(() => ({ point: vector(), normal: vector(1) })) },
-    measures: list(() => ({ from: vector(), to: vector() })),
+    section: { box: maybe(box), plane: maybe(() => ({ point: vector(), normal: vector(1) })), hatch: random() < 0.5 },
+    title: pick(notes), licence: pick(notes), unit: maybe(() => pick(UNITS)),
+    measures: list(() => {
+      const kind = pick(Object.keys(MEASURE_POINTS)), [least, most] = MEASURE_POINTS[kind];
+      return { kind, points: Array.from({ length: Math.min(most, least + Math.floor(random() * 3)) }, () => vector()) };
+    }),
     annotations: list(() => ({ text: pick(notes), point: vector(), camera: camera() })),
     path: list((i) => {
       const key = { time: i + random(), eye: vector(), target: vector() };
@@ -46,6 +50,24 @@ test('random settings survive the hash exactly', () => {
     assert.deepEqual(read.problems, []);
     assert.deepEqual(read.settings, settings);
   }
+});
+
+test('a hash holds what differs from the settings of the page, and nothing else', () => {
+  for (let seed = 1; seed <= 500; ++seed) {
+    const base = randomSettings(seed), settings = randomSettings(seed + 1000);
+    assert.equal(settingsToHash(base, null, base), '');
+    const hash = settingsToHash(settings, null, base), read = settingsFromHash(hash, base);
+    assert.deepEqual(read.problems, []);
+    assert.deepEqual(read.settings, settings);
+    assert.deepEqual(settingsFromHash(settingsToHash(DEFAULTS, null, base), base).settings, DEFAULTS);
+  }
+});
+
+test('measures of older files and links are distances', () => {
+  const distance = { kind: 'distance', points: [[0, 0, 0], [1, 2, 3]] };
+  assert.deepEqual(settingsFromJson('{"measures": [{"from": [0, 0, 0], "to": [1, 2, 3]}]}').measures, [distance]);
+  assert.deepEqual(settingsFromHash('measure=0,0,0;1,2,3').settings.measures, [distance]);
+  assert.equal(settingsToHash({ ...DEFAULTS, measures: [distance] }), 'measure=0,0,0;1,2,3');
 });
 
 test('a browser keeps the hash as it is', () => {
@@ -83,6 +105,8 @@ test('a key with a wrong type is an error that names the key', () => {
     [{ section: { box: { low: [0, 0, 0] } } }, '"section.box.high" is missing'],
     [{ section: { box: { low: [0, 2, 0], high: [1, 1, 1] } } }, '"section.box" has a low corner above its high corner'],
     [{ measures: [{ from: [0, 0, 0], to: 'x' }] }, '"measures[0].to" is not an array of three numbers'],
+    [{ measures: [{ kind: 'area', points: [[0, 0, 0], [1, 0, 0]] }] }, '"measures[0].points" has 2 points; a measure of kind area has 3 or more'],
+    [{ measures: [{ kind: 'volume', points: [] }] }, '"measures[0].kind" is not one of distance, path, area, angle, height'],
     [{ path: [{ time: 1, eye: [0, 0, 0], target: [1, 0, 0] }, { time: 1, eye: [0, 0, 0], target: [1, 0, 0] }] },
       '"path[1].time" is not greater than the time of the key before'],
     [{ version: 2 }, '"version" is 2; this viewer reads version 1'],

@@ -9,6 +9,7 @@
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/render/exposure.hpp"
+#include "voxdag/render/hatch.hpp"
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/stored_look.hpp"
 #include "voxdag/render/surface_normal.hpp"
@@ -156,7 +157,10 @@ Json light_constants() {
           VOXDAG_MEMBER(options, cube_pixels),
           VOXDAG_MEMBER(options, albedo),
           {"grey", kGreyBackground},
-          {"cutAlbedo", json_of(kCutAlbedo)}};
+          {"cutAlbedo", json_of(kCutAlbedo)},
+          {"hatchWidth", kHatchWidth},
+          {"hatchShade", kHatchShade},
+          {"hatchPeriods", kHatchPeriods}};
 }
 
 /// Returns all groups of constants by name.

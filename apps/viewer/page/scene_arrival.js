@@ -47,10 +47,11 @@ export class SceneArrival {
   #resolve = () => {};
 
   /**
-   * Begins to load: from bytes, from an address, or else from the page itself or the file beside it.
-   * @param {string | undefined} url @param {ArrayBuffer | undefined} bytes
+   * Begins to load: from bytes, from an address, from a file of this computer, or else from the page itself or the file beside it.
+   * @param {{url?: string, bytes?: ArrayBuffer, file?: Blob}} from
    */
-  async open(url, bytes) {
+  async open({ url, bytes, file }) {
+    if (file !== undefined) return this.loader.open({ file });
     if (url === undefined && bytes === undefined) bytes = (await inlineScene()) ?? undefined;
     await this.loader.open(bytes !== undefined ? { bytes } : { url: url ?? 'scene.vdag' });
   }
@@ -64,6 +65,7 @@ export class SceneArrival {
   #take(message) {
     switch (message.type) {
       case 'info':
+        this.report('begin', message.settings);
         return this.#begin(message.info, message.bytes);
       case 'progress':
         this.bytesLoaded = message.bytes;
@@ -91,7 +93,7 @@ export class SceneArrival {
     const box = { low: origin, high: /** @type {Vec3} */ (origin.map((x) => x + side)) };
     this.info = {
       name: source.name, levels, resolution, origin, voxelSize, bounds: box, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, materials, source,
-      view: this.#homeIn(box, info), home: info.home, cubes: info.cubes,
+      view: this.#homeIn(box, info), home: info.home, cubes: info.cubes, unit: info.unit,
     };
     this.bytesLoaded = bytes;
     this.report('info', this.info);
@@ -107,15 +109,19 @@ export class SceneArrival {
     memory.add(message, textures);
     if (message.type === 'attributes') return this.report('look', {});
     info.bounds = bounds(memory.dag(), BOUNDS_LEVEL) ?? info.bounds;
+    if (memory.info.up === null && memory.shown <= 7) this.guessed = guessUp(memory.dag());
     info.view = this.#homeIn(info.bounds, memory.info);
     this.report('level', { level: memory.shown, levels: info.levels, bytes: this.bytesLoaded });
   }
 
   /** Returns the first view of the scene. Its up vector is that of the file, else it is guessed. @param {import('./hands/pose.js').Box} box @param {FileInfo} info */
   #homeIn(box, { up, home }) {
-    const { memory } = this;
-    if (up === null && memory !== null && memory.shown <= 7) this.guessed = guessUp(memory.dag());
     return homeView(box, this.aspect(), up === null ? this.guessed : axisNamed(up), home);
+  }
+
+  /** Frames the home view again, after the picture has another shape. */
+  fit() {
+    if (this.info !== null && this.memory !== null) this.info.view = this.#homeIn(this.info.bounds, this.memory.info);
   }
 
   /** Uploads how often nodes are used, unless the textures hold it: they follow each level from then on. */
@@ -143,6 +149,8 @@ export class SceneArrival {
 
   close() {
     this.loader.close();
+    this.textures?.delete();
+    this.textures = null;
     this.end();
   }
 }

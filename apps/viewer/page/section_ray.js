@@ -1,5 +1,5 @@
 /** The part of a ray that a section leaves visible. */
-import { addScaled, dot, sub } from './math.js';
+import { addScaled, dot, length, sub } from './math.js';
 
 /** @typedef {import('./math.js').Vec3} Vec3 */
 
@@ -25,6 +25,11 @@ export function partInSection({ box, plane }, origin, direction, most) {
   if (plane) below(dot(plane.normal, sub(origin, plane.point)), dot(plane.normal, direction));
   return near <= far ? [near, far] : null;
 }
+
+/** Returns whether a section keeps a point. Points so little outside count as kept. @param {import('./settings.js').Settings['section']} section @param {Vec3} point @param {number} slack */
+export const keeps = ({ box, plane }, point, slack) =>
+  !(box && point.some((x, axis) => x < box.low[axis] - slack || x > box.high[axis] + slack)) &&
+  !(plane && dot(plane.normal, sub(point, plane.point)) > slack * length(plane.normal));
 
 /**
  * Casts a ray at the part of the scene that the section keeps.

@@ -9,11 +9,13 @@ import { cross, length, normalized, sub } from './math.js';
  * @typedef {{eye: Vec3, target: Vec3, up: Vec3, fov: number}} Camera  World units; vertical degrees.
  * @typedef {{low: Vec3, high: Vec3}} Box
  * @typedef {{point: Vec3, normal: Vec3}} Plane
- * @typedef {{from: Vec3, to: Vec3}} Measure
+ * @typedef {'distance' | 'path' | 'area' | 'angle' | 'height'} MeasureKind
+ * @typedef {{kind: MeasureKind, points: Vec3[]}} Measure  See measures.js.
  * @typedef {{text: string, point: Vec3, camera: Camera}} Annotation
  * @typedef {{time: number, eye: Vec3, target: Vec3, up?: Vec3, fov?: number}} PathKey  Seconds.
  * @typedef {'light' | 'level' | 'steps' | 'sharing' | 'normal' | 'depth' | 'occlusion'} Show
  * @typedef {'orbit' | 'fly' | 'walk'} Mode
+ * @typedef {'m' | 'cm' | 'mm' | 'in' | 'ft'} Unit
  *
  * @typedef {object} Settings
  * @property {1} version
@@ -33,8 +35,11 @@ import { cross, length, normalized, sub } from './math.js';
  * @property {boolean} normals
  * @property {number[]} hidden  Ids of the materials that rays pass through.
  * @property {Show} show
- * @property {{box: Box | null, plane: Plane | null}} section
+ * @property {{box: Box | null, plane: Plane | null, hatch: boolean}} section
  * @property {Mode} mode
+ * @property {string} title  Of the page; empty: the name of the scene.
+ * @property {string} licence  Of the scene.
+ * @property {Unit | null} unit  In which lengths are shown; null: that of the scene.
  * @property {Measure[]} measures
  * @property {Annotation[]} annotations
  * @property {PathKey[]} path
@@ -52,6 +57,10 @@ export const TONES = ['neutral', 'agx', 'filmic'];
 export const BACKGROUNDS = ['sky', 'grey', 'white', 'black'];
 /** @type {readonly Mode[]} */
 export const MODES = ['orbit', 'fly', 'walk'];
+/** @type {readonly Unit[]} */
+export const UNITS = ['m', 'cm', 'mm', 'in', 'ft'];
+/** How many points a measure of each kind has, at least and at most. @type {{[kind in MeasureKind]: [number, number]}} */
+export const MEASURE_POINTS = { distance: [2, 2], path: [2, 1000], area: [3, 1000], angle: [3, 3], height: [2, 2] };
 
 /** @type {Settings} */
 export const DEFAULTS = {
@@ -72,11 +81,20 @@ export const DEFAULTS = {
   normals: true,
   hidden: [],
   show: 'light',
-  section: { box: null, plane: null },
+  section: { box: null, plane: null, hatch: true },
   mode: 'orbit',
+  title: '',
+  licence: '',
+  unit: null,
   measures: [],
   annotations: [],
   path: [],
+};
+
+/** Changes that remove what belongs to one scene: light and picture stay. @type {PartialSettings} */
+export const NO_PLACES = {
+  camera: null, sun: { direction: null }, occlusion: { distance: 0 }, level: null, section: { box: null, plane: null }, mode: 'orbit',
+  title: '', licence: '', unit: null, measures: [], annotations: [], path: [],
 };
 
 /** Returns from which size in pixels voxels look like cubes: of a file whose voxels are cubes always, unless the settings differ from the default. @param {Settings} settings @param {{cubes: boolean} | null} info */
@@ -210,6 +228,17 @@ const pathKey = whole(
     return length(sub(key.target, key.eye)) > 0 ? key : refuse(name, 'has eye and target at one point');
   });
 
+/** Checks a measure; { from, to } of older files is a distance. @type {Check} */
+const measure = (value, key, _, ignored) => {
+  if (value && 'from' in Object(value)) {
+    const { from, to } = whole({ from: vector, to: vector })(value, key, null, ignored);
+    return { kind: 'distance', points: [from, to] };
+  }
+  const found = whole({ kind: oneOf(Object.keys(MEASURE_POINTS)), points: list(vector, 1000) }, { kind: 'distance' })(value, key, null, ignored);
+  const [least, most] = MEASURE_POINTS[/** @type {MeasureKind} */ (found.kind)], { length: count } = found.points;
+  return count >= least && count <= most ? found : refuse(`${key}.points`, `has ${count} points; a measure of kind ${found.kind} has ${least}${most > least ? ' or more' : ''}`);
+};
+
 /** @type {Check} */
 const path = (value, key, _, ignored) => {
   const keys = list(pathKey, 10000)(value, key, null, ignored);
@@ -241,9 +270,13 @@ const settingsCheck = record({
   section: record({
     box: orNull(whole({ low: vector, high: vector }, {}, checkBox)),
     plane: orNull(whole({ point: vector, normal: direction })),
+    hatch: boolean,
   }),
   mode: oneOf(MODES),
-  measures: list(whole({ from: vector, to: vector }), 10000),
+  title: text(200),
+  licence: text(500),
+  unit: orNull(oneOf(UNITS)),
+  measures: list(measure, 10000),
   annotations: list(
     whole({ text: text(2000), point: vector, camera: whole(cameraFields, cameraDefaults, checkView) }), 10000),
   path,

@@ -9,7 +9,7 @@ import { framedCamera } from './hands/pose.js';
 import { directionThrough } from './lens.js';
 import { SceneArrival } from './scene_arrival.js';
 import { castInSection } from './section_ray.js';
-import { DEFAULTS, mergeSettings, shownCubes } from './settings.js';
+import { DEFAULTS, NO_PLACES, mergeSettings, settingsFromJson, shownCubes } from './settings.js';
 import { cast, contains } from './trace.js';
 
 /**
@@ -64,6 +64,8 @@ class CanvasViewer extends Events {
     /** @type {PictureSchedule | null} */
     this.pictures = null;
     this.pacer = new Pacer();
+    /** The name of the file that was opened on this computer. @type {string | null} */
+    this.file = null;
     this.hasFailed = false;
     this.isLost = false;
     this.isDestroyed = false;
@@ -89,7 +91,50 @@ class CanvasViewer extends Events {
     this.#prepare(gl);
     this.#resize();
     this.arrival = new SceneArrival(gl, () => this.#aspect(), (event, ...values) => this.#report(event, ...values));
-    await this.arrival.open(url, bytes);
+    await this.arrival.open({ url, bytes });
+  }
+
+  /**
+   * Shows the scene of a file of this computer in place of the present one: a .vdag file, or a page that holds one.
+   * Throws Error if the file is of another kind or broken; then the present scene stays.
+   * @param {File} file @returns {Promise<void>}  Until the file's header is read.
+   */
+  async open(file) {
+    await this.started;
+    const { gl } = this;
+    if (gl === null || this.isDestroyed) throw new Error('there is no picture');
+    return new Promise((resolve, reject) => {
+      const arrival = new SceneArrival(gl, () => this.#aspect(), (event, ...values) => {
+        if (this.arrival === arrival) return this.#report(event, ...values);
+        if (event === 'error') {
+          arrival.close();
+          reject(new Error(`${values[0].title}. ${values[0].text}`));
+        } else if (event === 'begin') {
+          try {
+            this.#replace(arrival, file.name, values[0]);
+            resolve();
+          } catch (error) {
+            arrival.close();
+            reject(error);
+          }
+        }
+      });
+      arrival.open({ file }).catch(reject);
+    });
+  }
+
+  /**
+   * Leaves a scene for another. Settings of its places go; those of light and picture stay, unless the new scene has settings.
+   * @param {SceneArrival} arrival @param {string} name @param {string | null} settings  JSON.
+   */
+  #replace(arrival, name, settings) {
+    const wanted = settings === null ? NO_PLACES : settingsFromJson(settings);
+    this.arrival?.close();
+    this.arrival = arrival;
+    this.file = name;
+    this.hasFailed = false;
+    this.emit('opened', name);
+    this.set(wanted, 'file');
   }
 
   /** Makes what a graphics card needs, for the first time or after it was lost. @param {WebGL2RenderingContext} gl */
@@ -223,6 +268,7 @@ class CanvasViewer extends Events {
     if (width === this.canvas.width && height === this.canvas.height) return;
     this.canvas.width = width;
     this.canvas.height = height;
+    this.arrival?.fit();
     this.pictures?.redraw();
     this.#touch(true);
     this.emit('resize', { width, height });

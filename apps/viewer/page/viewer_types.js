@@ -29,6 +29,7 @@
  * @property {{name?: string, vertices?: number, triangles?: number}} [source]
  * @property {Camera} view  The suggested view.
  * @property {(Camera & {sun?: Vec3}) | null} home  The view of the file, with a sun if it is an interior.
+ * @property {import('./settings.js').Unit | null} unit  Of world coordinates, if the file says it.
  * @property {boolean} cubes  Whether its voxels are cubes, not samples of smooth surfaces.
  *
  * @typedef {object} Statistics
@@ -47,6 +48,8 @@
  * @typedef {object} Viewer
  * @property {HTMLCanvasElement} canvas
  * @property {SceneInfo | null} info  Null until the file's header is read.
+ * @property {string | null} file  The name of the file that was opened on this computer.
+ * @property {(file: File) => Promise<void>} open  Shows the scene of a .vdag file or of a page; throws Error if the file has none.
  * @property {(event: string, handler: (...values: any[]) => void) => void} on
  * @property {(event: string, handler: (...values: any[]) => void) => void} off
  * @property {(settings: PartialSettings, by?: string) => void} set

@@ -101,10 +101,12 @@ const httplib::Headers& Answers::default_headers() {
   return headers;
 }
 
-Answers::Answers(const SceneBytes& scene, const std::string& local_host)
+Answers::Answers(const SceneBytes& scene, std::span<const PageFile> files,
+                 const std::string& local_host)
     : scene_(scene), local_host_(local_host), scene_tag_(quoted_tag(scene.tag())) {
-  for (const PageFile& file : page_files()) {
-    PageEncodings& encodings = page_[file.path];
+  for (const PageFile& file : files) {
+    PageFileAnswer& encodings = page_[file.path];
+    encodings.file = file;
     encodings.tag = tag_of(file.bytes);
     std::string compressed = gzip(file.bytes);
     if (compressed.size() >= file.bytes.size()) continue;
@@ -140,27 +142,27 @@ void Answers::answer(const httplib::Request& request, httplib::Response& respons
   }
   if (is_for_scene(request)) return answer_scene(request, response);
   const std::string_view path = request.path;
-  const PageFile* const file = path == "/"             ? find_page_file("index.html")
-                               : path.starts_with("/") ? find_page_file(path.substr(1))
-                                                       : nullptr;
-  if (file == nullptr) return refuse(response, 404, "not found");
-  answer_page(*file, request, response);
+  const auto file =
+      path.starts_with("/") ? page_.find(path == "/" ? "index.html" : path.substr(1)) : page_.end();
+  if (file == page_.end()) return refuse(response, 404, "not found");
+  answer_page(file->second, request, response);
 }
 
-void Answers::answer_page(const PageFile& file, const httplib::Request& request,
+void Answers::answer_page(const PageFileAnswer& encodings, const httplib::Request& request,
                           httplib::Response& response) const {
-  const PageEncodings& encodings = page_.at(file.path);
   const bool is_compressed =
       !encodings.gzip.empty() && accepts_gzip(request.get_header_value("Accept-Encoding"));
   response.set_header("Vary", "Accept-Encoding");
   if (is_compressed) response.set_header("Content-Encoding", "gzip");
   if (answer_known(request, response, is_compressed ? encodings.gzip_tag : encodings.tag)) return;
-  const std::string_view bytes = is_compressed ? std::string_view(encodings.gzip) : file.bytes;
-  give(response, bytes.size(), std::string(file.type), [bytes](std::uint64_t offset, auto out) {
-    std::copy_n(std::as_bytes(std::span(bytes)).begin() + static_cast<std::ptrdiff_t>(offset),
-                out.size(), out.begin());
-    return true;
-  });
+  const std::string_view bytes =
+      is_compressed ? std::string_view(encodings.gzip) : encodings.file.bytes;
+  give(response, bytes.size(), std::string(encodings.file.type),
+       [bytes](std::uint64_t offset, auto out) {
+         std::copy_n(std::as_bytes(std::span(bytes)).begin() + static_cast<std::ptrdiff_t>(offset),
+                     out.size(), out.begin());
+         return true;
+       });
 }
 
 void Answers::answer_scene(const httplib::Request& request, httplib::Response& response) const {

@@ -15,7 +15,8 @@ namespace voxdag {
 
 /// How the server sends a file of the page: the entity tag of its bytes, and its bytes compressed
 /// by gzip.
-struct PageEncodings {
+struct PageFileAnswer {
+  PageFile file;
   std::string tag;
   std::string gzip;  ///< Empty if it would not be smaller.
   std::string gzip_tag;
@@ -27,8 +28,8 @@ struct PageEncodings {
 class Answers {
  public:
   /// If `local_host` is not empty, requests are refused unless their Host is this name or a name of
-  /// the loopback interface. `scene` must outlive this object.
-  Answers(const SceneBytes& scene, const std::string& local_host);
+  /// the loopback interface. `scene` and `files` must outlive this object.
+  Answers(const SceneBytes& scene, std::span<const PageFile> files, const std::string& local_host);
 
   /// Returns the header fields of every answer.
   static const httplib::Headers& default_headers();
@@ -40,14 +41,14 @@ class Answers {
 
  private:
   bool is_allowed_host(const httplib::Request& request) const;
-  void answer_page(const PageFile& file, const httplib::Request& request,
+  void answer_page(const PageFileAnswer& file, const httplib::Request& request,
                    httplib::Response& response) const;
   void answer_scene(const httplib::Request& request, httplib::Response& response) const;
   void answer_parts(const std::vector<ByteRange>& ranges, httplib::Response& response) const;
 
   const SceneBytes& scene_;
   const std::string local_host_, scene_tag_;
-  std::map<std::string_view, PageEncodings> page_;  ///< By the path of the page's file.
+  std::map<std::string_view, PageFileAnswer> page_;  ///< By the path of the page's file.
 };
 
 }  // namespace voxdag

@@ -46,7 +46,7 @@ class PageServer::Http final : public httplib::Server {
       if (response.status == 304) response.headers.erase("Content-Length");
     });
     bind();
-    answers_.emplace(scene, is_local_ ? url_host(options_.address) : "");
+    answers_.emplace(scene, options_.files, is_local_ ? url_host(options_.address) : "");
   }
   ~Http() override {
     stop();

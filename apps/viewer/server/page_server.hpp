@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "viewer/embedded/page_files.hpp"
 #include "viewer/scene/scene_bytes.hpp"
 #include "viewer/server/server_limits.hpp"
 
@@ -14,6 +15,8 @@ struct ServerOptions {
   std::string address = "127.0.0.1";
   int port = 0;  ///< 0: any free port.
   ServerLimits limits{};
+  /// The files of the page, which must outlive the server.
+  std::span<const PageFile> files = page_files();
 };
 
 /// Answers requests as Answers does. Each connection has a thread. If there are too many, one that

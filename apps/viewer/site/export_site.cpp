@@ -4,7 +4,6 @@
 #include <string_view>
 #include <system_error>
 
-#include "viewer/embedded/page_files.hpp"
 #include "viewer/gzip/gzip.hpp"
 #include "viewer/site/base64.hpp"
 #include "viewer/site/scene_pieces.hpp"
@@ -49,7 +48,8 @@ void write_scene(const fs::path& path, const SceneBytes& scene, Work work) {
 
 }  // namespace
 
-std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Work work) {
+std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Work work,
+                          std::span<const PageFile> files) {
   const fs::path target = folder.has_filename() ? folder : folder.parent_path();
   std::error_code error;
   const fs::file_status status = fs::symlink_status(target, error);
@@ -59,7 +59,7 @@ std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Work 
   }
   const TemporaryFolder site(target);
   std::uint64_t bytes = scene.size();
-  for (const PageFile& file : page_files()) {
+  for (const PageFile& file : files) {
     const fs::path path = site.path() / file.path;
     fs::create_directories(path.parent_path(), error);
     if (error) fail(target, "cannot create", error);
@@ -72,8 +72,8 @@ std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Work 
 }
 
 std::uint64_t export_single_page(const std::filesystem::path& path, const SceneBytes& scene,
-                                 Work work) {
-  const SinglePage page = make_single_page(page_files());
+                                 Work work, std::span<const PageFile> files) {
+  const SinglePage page = make_single_page(files);
   AtomicFile file(path);
   file.write(page.before);
   Gzip gzip;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "viewer/embedded/page_files.hpp"
 #include "viewer/scene/scene_bytes.hpp"
 #include "voxdag/core/parallel/work.hpp"
 
@@ -13,13 +14,15 @@ inline constexpr std::uint64_t kHandyPageBytes = std::uint64_t{64} << 20;
 
 /// Writes a folder with the page's files and "scene.vdag", completely or not at all: it fills a
 /// temporary folder, then renames it. Replaces an existing folder if that has no files but these.
-/// Returns the bytes of all files. Throws Error, and Cancelled.
+/// Returns the bytes of all files. `files` are those of page_files(), or of a BakedPage. Throws
+/// Error, and Cancelled.
 std::uint64_t export_site(const std::filesystem::path& folder, const SceneBytes& scene,
-                          Work work = {});
+                          Work work = {}, std::span<const PageFile> files = page_files());
 
 /// Writes the page of make_single_page() with the scene, completely or not at all. The bytes of the
-/// file depend on the scene's bytes alone. Returns its size. Throws Error, and Cancelled.
+/// file depend on the bytes of the scene and of `files` alone. Returns its size. Throws Error, and
+/// Cancelled.
 std::uint64_t export_single_page(const std::filesystem::path& file, const SceneBytes& scene,
-                                 Work work = {});
+                                 Work work = {}, std::span<const PageFile> files = page_files());
 
 }  // namespace voxdag

@@ -32,6 +32,7 @@ struct ExportArguments {
   ExportContent content;
   std::optional<int> slices;  ///< Axis.
   ShownSceneArguments page;
+  PageViewArguments page_view;
 
   /// Returns the output with the extension of its format.
   std::string name() const { return content.format.empty() ? output : "out." + content.format; }
@@ -65,7 +66,8 @@ FaceMesh face_mesh(const ExportArguments& arguments) {
 }
 
 void export_file(ExportArguments& arguments, Session& session) {
-  if (arguments.is_page()) return export_page(arguments.output, arguments.page, session);
+  if (arguments.is_page())
+    return export_page(arguments.output, arguments.page, arguments.page_view, session);
   if (!arguments.slices) {
     check_extension(arguments);
     check_writable(arguments.output);
@@ -110,7 +112,13 @@ void export_file(ExportArguments& arguments, Session& session) {
 }
 
 void add_page_options(const Command& command, ExportArguments& arguments) {
-  for (const Option& option : add_reduction_options(command, arguments.page.reduction))
+  std::vector<Option> options = add_reduction_options(command, arguments.page.reduction);
+  for (const Option& option : add_page_view_options(command, arguments.page_view))
+    options.push_back(option);
+  options.push_back(command.flag("--poster", arguments.page_view.poster,
+                                 "Render the first view, and show that picture until the page has "
+                                 "loaded the scene: about 20 KB"));
+  for (const Option& option : options)
     option.in_group("Options for pages only (.html, FOLDER/)")
         .only_if([&arguments] { return arguments.is_page(); },
                  "on an output that is neither .html nor a folder");
@@ -191,6 +199,8 @@ void add_export_command(const Command& program, Session& session) {
       "  voxdag export scene.vdag -o part.raw --window 0,0,0,512,512,512\n"
       "  voxdag export solid.vdag -o layers/ --slices z\n"
       "  voxdag export scene.vdag -o scene.html\n"
+      "  voxdag export scene.vdag -o scene.html --view scene.settings.json --title Castle "
+      "--poster\n"
       "  voxdag export scene.vdag -o site/\n"
       "  voxdag export bunny.ply -r 256 -o bunny.vox\n\n"
       "An ESVO exports its voxels of the finest level. The outputs have the colours of the file, "
@@ -248,7 +258,7 @@ void add_export_command(const Command& program, Session& session) {
   add_json_option(command, session);
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
-    session.inputs = {arguments->look};
+    session.inputs = {arguments->look, arguments->page_view.file};
     check_outputs(*arguments, session);
     session.work = [arguments, &session] {
       work_on_scene(arguments->input, session, [&] { export_file(*arguments, session); });

@@ -11,10 +11,12 @@
 #include "render/render_film.hpp"
 #include "render/render_mesh.hpp"
 #include "render/render_streamed.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cpu/with_home.hpp"
 #include "voxdag/cuda/render_image.hpp"
 #include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/render/film/camera_file.hpp"
 #include "voxdag/render/film/frame_names.hpp"
 
 namespace voxdag::cli {
@@ -39,6 +41,7 @@ void render_loaded(const RenderArguments& arguments, Session& session) {
   // --materials, which shows materials as colours, wins over the file of --view.
   if (!arguments.view.colors && !arguments.materials) options.look.dag.attributes.colors = {};
   if (!arguments.view.normals) options.look.dag.attributes.normals = {};
+  if (options.with_material) options.materials = (look ? *look : file).colored_dag();
   std::optional<CpuScene> cpu_scene;
   if (!device_scene) cpu_scene.emplace(scene);
   const std::unique_ptr<ViewSource> source =
@@ -54,6 +57,8 @@ void render_loaded(const RenderArguments& arguments, Session& session) {
   const RenderedImage image = render(options, &session.progress);
   const double seconds = watch.since_start();
   for (const PicturePass& pass : all_passes(arguments)) write_pass(*pass.kind, pass.path, image);
+  if (!arguments.write_camera.empty())
+    write_whole_file(arguments.write_camera, camera_json(image.view, image.width, image.height));
   session.bar.clear();
   if (!session.quiet)
     print_picture_summary(arguments.output, image, seconds, device_name(device_scene));
@@ -63,6 +68,7 @@ void render(RenderArguments& arguments, Session& session) {
   const bool is_film = !arguments.path.file.empty();
   const bool is_first = !is_film || join_job(session).is_first();
   apply_view_file(arguments, session);
+  read_render_files(arguments);
   if (is_first)
     for (const PicturePass& pass : all_passes(arguments)) check_writable(frame_name(pass.path, 0));
   if (arguments.stream_memory == 0) return render_loaded(arguments, session);

@@ -6,6 +6,8 @@
 #include <filesystem>
 
 #include "cli/output_files.hpp"
+#include "voxdag/image/light_image.hpp"
+#include "voxdag/render/film/camera_file.hpp"
 #include "voxdag/render/film/frame_names.hpp"
 #include "voxdag/render/film/view_settings.hpp"
 
@@ -42,6 +44,8 @@ std::vector<OutputFile> check_outputs(const RenderArguments& arguments, const Se
                        fmt::format("\"{}\" does not end in .png or .exr", output.path));
     check_frame_pattern(output, !arguments.path.file.empty());
   }
+  if (!arguments.write_camera.empty())
+    outputs.push_back({"--write-camera", arguments.write_camera});
   if (!arguments.path.timings.empty()) outputs.push_back({"--timings", arguments.path.timings});
   check_distinct(outputs, session);
   return outputs;
@@ -63,7 +67,10 @@ void check_view(const ViewRequest& view) {
 }  // namespace
 
 void check_render_arguments(RenderArguments& arguments, Session& session) {
-  session.inputs = {arguments.mesh.file, arguments.path.file, arguments.look, arguments.view.file};
+  session.inputs = {arguments.mesh.file, arguments.path.file, arguments.look, arguments.view.file,
+                    arguments.camera_matrix};
+  if (!is_built_in_environment(arguments.environment))
+    session.inputs.push_back(arguments.environment);
   if (arguments.mesh.primary == "mesh" && arguments.mesh.file.empty())
     throw UsageError("--primary", "\"mesh\" needs --mesh");
   arguments.mesh.access.outputs = check_outputs(arguments, session);
@@ -72,6 +79,25 @@ void check_render_arguments(RenderArguments& arguments, Session& session) {
   if (arguments.options.lights.size() > kMaxLights)
     throw UsageError("--light", fmt::format("is given {} times; at most {} are allowed",
                                             arguments.options.lights.size(), kMaxLights));
+}
+
+void read_render_files(RenderArguments& arguments) {
+  RenderOptions& options = arguments.options;
+  const std::string& environment = arguments.environment;
+  try {
+    if (is_built_in_environment(environment))
+      options.environment = std::make_shared<Environment>(built_in_environment(environment));
+    else if (!environment.empty())
+      options.environment = std::make_shared<Environment>(read_light_image(environment));
+  } catch (const Error& error) {
+    throw error.in_file(environment);
+  }
+  if (arguments.camera_matrix.empty()) return;
+  const ViewRequest camera = read_camera_file(arguments.camera_matrix);
+  options.view.eye = camera.eye;
+  options.view.target = camera.target;
+  options.view.up = camera.up;
+  options.view.vertical_fov_degrees = camera.vertical_fov_degrees;
 }
 
 bool ViewFileArguments::has(const std::string& option) const {
@@ -113,6 +139,7 @@ void apply_view_file(RenderArguments& arguments, Session& session) {
   take("--lod", options.lod_pixels, saved.lod_pixels);
   take("--section-box", options.section.box, saved.section.box);
   take("--section-plane", options.section.plane, saved.section.plane);
+  options.section.hatch = saved.section.hatch;
   take("--cubes", options.cube_pixels, saved.cube_pixels);
   if (!arguments.mesh.file.empty() && (options.section.box || options.section.plane))
     throw Error(view.file, "", "\"section\" cannot cut the triangles of --mesh: set it to null");

@@ -44,6 +44,8 @@ struct ViewFileArguments {
 struct RenderArguments {
   SceneInput input;
   std::string output, depth, normal;
+  std::string environment;                  ///< The file or the name of --environment; empty: none.
+  std::string camera_matrix, write_camera;  ///< Files of cameras as matrices; empty: none.
   ViewFileArguments view;
   std::string look;                 ///< The file of --look; empty: none.
   bool materials = false;           ///< Show each material in a colour of its own.
@@ -69,6 +71,10 @@ void check_render_arguments(RenderArguments& arguments, Session& session);
 /// give. Prints a warning for each setting that it ignores. Throws what read_view_settings()
 /// throws.
 void apply_view_file(RenderArguments& arguments, Session& session);
+
+/// Reads the files of --environment and --camera-matrix, and sets the options to what they say.
+/// Throws Error with the file.
+void read_render_files(RenderArguments& arguments);
 
 /// Returns all passes to write: the picture, --depth, --normal and --pass.
 std::vector<PicturePass> all_passes(const RenderArguments& arguments);

@@ -95,26 +95,36 @@ bool has_soft_light(const RenderOptions& options) {
 }
 
 struct ViewOptions {
-  Option eye, target;
+  Option eye, target, matrix, write_camera;
 };
 
 /// Options that win over the file of --view.
 using Winners = std::vector<Option>;
 
-ViewOptions add_view_options(const Command& command, ViewRequest& view, Winners& winners) {
+ViewOptions add_view_options(const Command& command, RenderArguments& arguments, Winners& winners) {
+  ViewRequest& view = arguments.options.view;
   const Option eye = command.parsed("--eye", view.eye, parse_vec3, "X,Y,Z",
                                     "Position of the camera (default: chosen to show the scene)");
   const Option target =
       command.parsed("--target", view.target, parse_vec3, "X,Y,Z",
                      "Point in the centre of the picture (default: chosen to show the scene)");
-  winners.push_back(command.parsed(
+  const Option up = command.parsed(
       "--up", view.up, parse_direction, "X,Y,Z",
-      "Direction that is up (default: y, or z if the shape of the scene shows that z is up)"));
-  winners.push_back(command.optional_number<double>(
+      "Direction that is up (default: y, or z if the shape of the scene shows that z is up)");
+  const Option fov = command.optional_number<double>(
       "--fov", view.vertical_fov_degrees, NumberRange::half_open(kMinFovDegrees, 180), "DEGREES",
-      "Vertical angle of view, below 180 (default: chosen to show the scene)"));
-  winners.insert(winners.end(), {eye, target});
-  return {eye, target};
+      "Vertical angle of view, below 180 (default: chosen to show the scene)");
+  winners.insert(winners.end(), {eye, target, up, fov});
+  const Option matrix = command.text(
+      "--camera-matrix", arguments.camera_matrix, "CAMERA.json",
+      "Take the camera from matrices: \"camera_to_world\" or \"world_to_camera\" (OpenGL's "
+      "convention, or \"convention\": \"opencv\"), and \"fov_y_degrees\", or \"intrinsics\" "
+      "with \"height\"");
+  for (const Option& option : {eye, target, up, fov}) option.not_with(matrix);
+  const Option write_camera =
+      command.text("--write-camera", arguments.write_camera, "CAMERA.json",
+                   "Write the camera of the picture as matrices, as --camera-matrix reads them");
+  return {eye, target, matrix, write_camera};
 }
 
 void add_sun_options(const Command& command, RenderOptions& options, Winners& winners) {
@@ -133,7 +143,8 @@ void add_sun_options(const Command& command, RenderOptions& options, Winners& wi
   winners.push_back(command.off_switch("--no-sun", options.with_sun, "Turn the sun off"));
 }
 
-void add_light_options(const Command& command, RenderOptions& options, Winners& winners) {
+void add_light_options(const Command& command, RenderArguments& arguments, Winners& winners) {
+  RenderOptions& options = arguments.options;
   add_sun_options(command, options, winners);
   command.repeated(
       "--light", options.lights, parse_light, "KIND:...",
@@ -142,6 +153,14 @@ void add_light_options(const Command& command, RenderOptions& options, Winners& 
       "15 times");
   winners.push_back(command.number("--sky", options.sky, NumberRange::from(0, RenderLimits::kSky),
                                    "FACTOR", "Factor that scales the light of the sky; 0: black"));
+  const Option environment = command.text(
+      "--environment", arguments.environment, "FILE|NAME",
+      "Light the scene by this picture of all directions instead of the clear sky: an "
+      "equirectangular .hdr or .exr file, or studio, overcast or sunset. Its sun casts shadows");
+  command
+      .number("--environment-turn", options.environment_degrees, NumberRange::from(-360, 360),
+              "DEGREES", "Turn the environment to the left")
+      .needs(environment);
   const auto has_lights = [&options] { return options.with_sun || !options.lights.empty(); };
   winners.push_back(command
                         .off_switch("--no-shadows", options.shadows,
@@ -178,6 +197,13 @@ void add_occlusion_options(const Command& command, RenderOptions& options, Winne
               "End ambient occlusion rays at cells of this solid angle, such as 0.07: darker, and "
               "faster on rough surfaces; 0: never")
           .only_if(has_occlusion, "with --ao 0"));
+  command
+      .optional_number<int>(
+          "--bounces", options.bounces, NumberRange::whole(0, RenderLimits::kBounces), "N",
+          "Trace paths instead of ambient occlusion: exact light of the sky and of "
+          "up to N reflections, with --ao paths per pixel; grainy below some "
+          "thousand paths")
+      .only_if(has_occlusion, "with --ao 0");
 }
 
 void add_quality_options(const Command& command, RenderOptions& options, Winners& winners) {
@@ -251,11 +277,14 @@ void add_filter_options(const Command& command, RenderArguments& arguments) {
 void add_section_options(const Command& command, RenderArguments& arguments) {
   const auto has_no_mesh = [&arguments] { return arguments.mesh.file.empty(); };
   SectionOptions& section = arguments.options.section;
+  section.hatch = true;  // As in the page.
   Winners& winners = arguments.view.winners;
-  winners.push_back(command
-                        .parsed("--section-box", section.box, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
-                                "Show only what is in this box, in world units; not with --mesh")
-                        .only_if(has_no_mesh, "with --mesh"));
+  winners.push_back(
+      command
+          .parsed("--section-box", section.box, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
+                  "Show only what is in this box, in world units; not with --mesh. Cut "
+                  "faces are hatched, unless --view says \"hatch\": false")
+          .only_if(has_no_mesh, "with --mesh"));
   winners.push_back(command
                         .parsed("--section-plane", section.plane, parse_plane, "PX,PY,PZ,NX,NY,NZ",
                                 "Remove the side of the plane through the point P to which the "
@@ -271,6 +300,8 @@ void add_path_options(const Command& command, PathArguments& path, const ViewOpt
       "srun, the processes share the frames");
   view.eye.not_with(file);
   view.target.not_with(file);
+  view.matrix.not_with(file);
+  view.write_camera.not_with(file);
   command
       .number("--fps", path.frames_per_second, NumberRange::up_to(kMaxFramesPerSecond), "N",
               "With --path: frames per second")
@@ -294,8 +325,8 @@ void add_render_options(const Command& command, Session& session, RenderArgument
   command.parsed("--size", arguments.size, parse_image_size, "WxH",
                  "Width and height in pixels, 1 to 32768 each (default: 1920x1080)");
   Winners& winners = arguments.view.winners;
-  const ViewOptions view = add_view_options(command, options.view, winners);
-  add_light_options(command, options, winners);
+  const ViewOptions view = add_view_options(command, arguments, winners);
+  add_light_options(command, arguments, winners);
   add_occlusion_options(command, options, winners);
   add_quality_options(command, options, winners);
   command.text("--view", arguments.view.file, "SETTINGS.json",
@@ -306,8 +337,8 @@ void add_render_options(const Command& command, Session& session, RenderArgument
   command.text("--depth", arguments.depth, "OUT", "Short for --pass depth=OUT");
   command.text("--normal", arguments.normal, "OUT", "Short for --pass normal=OUT");
   command.repeated("--pass", arguments.passes, parse_pass, "NAME=OUT",
-                   "Also write a pass: picture, radiance, depth, normal, occlusion, shadow, steps "
-                   "or steps64 to a .exr or .png file; repeatable");
+                   "Also write a pass: picture, radiance, depth, normal, albedo, occlusion, "
+                   "shadow, voxel, material, steps or steps64 to a .exr or .png file; repeatable");
   const auto shows_voxels = [&arguments] { return !arguments.mesh.is_seen(); };
   add_look_option(command, arguments.look).only_if(shows_voxels, "with --mesh");
   command

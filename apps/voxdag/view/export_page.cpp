@@ -36,12 +36,16 @@ void check_page_output(const std::string& output, const Session& session) {
 }
 
 void export_page(const std::string& output, const ShownSceneArguments& arguments,
-                 Session& session) {
+                 const PageViewArguments& shown, Session& session) {
+  PageView view = read_page_view(shown);
   const ShownScene scene =
       ShownScene::read(session.subject, arguments, AttributeForm::kWire, session);
-  const std::uint64_t bytes = is_single_file(output)
-                                  ? export_single_page(output, scene.bytes(), &session.progress)
-                                  : export_site(output, scene.bytes(), &session.progress);
+  if (shown.poster) view.poster = render_poster(shown, scene, &session.progress);
+  const BakedPage page(view);
+  const std::uint64_t bytes =
+      is_single_file(output)
+          ? export_single_page(output, scene.bytes(), &session.progress, page.files())
+          : export_site(output, scene.bytes(), &session.progress, page.files());
   print_written({{output},
                  {{"voxels", scene.voxels()}},
                  "the scene alone " + human_bytes(scene.bytes().size())},

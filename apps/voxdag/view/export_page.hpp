@@ -3,6 +3,7 @@
 #include <string>
 
 #include "cli/session.hpp"
+#include "view/page_view.hpp"
 #include "view/shown_scene.hpp"
 
 namespace voxdag::cli {
@@ -13,8 +14,9 @@ bool is_page_output(const std::string& output);
 /// Throws UsageError if the page would replace an input, or the folder of an input.
 void check_page_output(const std::string& output, const Session& session);
 
-/// Writes the page with the scene of session.subject. Prints its size, and a warning if it is one
-/// large file.
-void export_page(const std::string& output, const ShownSceneArguments& arguments, Session& session);
+/// Writes the page with the scene of session.subject, which it shows as `shown` says. Prints its
+/// size, and a warning if it is one large file.
+void export_page(const std::string& output, const ShownSceneArguments& arguments,
+                 const PageViewArguments& shown, Session& session);
 
 }  // namespace voxdag::cli

@@ -10,6 +10,8 @@ void require_page_server() {
       "FILE -o FOLDER/`, which writes a page for any web server");
 }
 
-void serve_scene(const SceneBytes&, const ServeArguments&, Session&) { require_page_server(); }
+void serve_scene(const SceneBytes&, std::span<const PageFile>, const ServeArguments&, Session&) {
+  require_page_server();
+}
 
 }  // namespace voxdag::cli

@@ -49,8 +49,10 @@ void open_in_browser(const std::string& url) {
 
 void require_page_server() {}
 
-void serve_scene(const SceneBytes& scene, const ServeArguments& arguments, Session& session) {
+void serve_scene(const SceneBytes& scene, std::span<const PageFile> page,
+                 const ServeArguments& arguments, Session& session) {
   ServerOptions options;
+  options.files = page;
   options.address = arguments.address;
   options.port = arguments.port;
   PageServer server(scene, options);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "cli/session.hpp"
+#include "viewer/embedded/page_files.hpp"
 #include "viewer/scene/scene_bytes.hpp"
 
 namespace voxdag::cli {
@@ -16,8 +17,9 @@ struct ServeArguments {
 /// Throws Error if this program was built without the server.
 void require_page_server();
 
-/// Prints the page's address as one line on stdout, and serves the page until the user ends the
-/// program. Throws Error if it cannot listen, and Cancelled at a signal.
-void serve_scene(const SceneBytes& scene, const ServeArguments& arguments, Session& session);
+/// Prints the page's address as one line on stdout, and serves the files of the page until the user
+/// ends the program. Throws Error if it cannot listen, and Cancelled at a signal.
+void serve_scene(const SceneBytes& scene, std::span<const PageFile> page,
+                 const ServeArguments& arguments, Session& session);
 
 }  // namespace voxdag::cli

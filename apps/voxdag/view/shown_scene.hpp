@@ -29,6 +29,8 @@ class ShownScene {
                          AttributeForm form, Session& session);
 
   const SceneBytes& bytes() const { return *bytes_; }
+  /// Returns the DAG of a scene from read().
+  const ReducedDag& dag() const { return *dag_; }
   /// Returns the number of voxels of a scene from read().
   std::uint64_t voxels() const { return dag_->metadata().counts.voxels; }
 

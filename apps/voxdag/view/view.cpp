@@ -4,6 +4,7 @@
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
 #include "cli/scene_input.hpp"
+#include "view/page_view.hpp"
 #include "view/serve_scene.hpp"
 #include "view/shown_scene.hpp"
 
@@ -14,11 +15,13 @@ struct ViewArguments {
   SceneInput input;
   ShownSceneArguments scene;
   ServeArguments serve;
+  PageViewArguments page_view;
 };
 
 void view(const ViewArguments& arguments, Session& session) {
+  const BakedPage page(read_page_view(arguments.page_view));
   const ShownScene scene = ShownScene::open(session.subject, arguments.scene, session);
-  serve_scene(scene.bytes(), arguments.serve, session);
+  serve_scene(scene.bytes(), page.files(), arguments.serve, session);
 }
 
 }  // namespace
@@ -29,6 +32,7 @@ void add_view_command(const Command& program, Session& session) {
       "view", "Show a DAG in the browser",
       "voxdag view scene.vdag\n"
       "  voxdag view scene.vdag --port 8080 --no-open\n"
+      "  voxdag view scene.vdag --view scene.settings.json\n"
       "  voxdag view castle.vox\n"
       "  voxdag view sponza.obj -r 4096 --keep sponza.vdag\n\n"
       "Starts a server, prints the address of the page as one line on stdout, and opens "
@@ -44,6 +48,7 @@ void add_view_command(const Command& program, Session& session) {
   command.text("--listen", arguments->serve.address, "ADDRESS",
                "Address of the server (default: 127.0.0.1, for this machine only). With another "
                "address, everyone who reaches it can read the scene");
+  add_page_view_options(command, arguments->page_view);
   command.off_switch("--no-open", arguments->serve.open,
                      "Only print the page's address, without opening a browser");
   command.parsed("--memory", arguments->scene.memory_limit, parse_memory, "LIMIT",
@@ -51,6 +56,7 @@ void add_view_command(const Command& program, Session& session) {
                  "quarters of the available memory)");
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
+    session.inputs = {arguments->page_view.file};
     session.work = [arguments, &session] {
       require_page_server();
       work_on_scene(arguments->input, session, [&] { view(*arguments, session); });

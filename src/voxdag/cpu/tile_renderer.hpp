@@ -112,7 +112,8 @@ class TileRenderer {
   }
 
  private:
-  using Scratch = TileScratch<kMaxTileSize * kMaxTileSize>;
+  static constexpr int kMaxPixels = kMaxTileSize * kMaxTileSize;
+  using Scratch = TileScratch<kMaxPixels, PathScratch<kMaxPixels>>;
 
   template <class TileNodes, class TileCaster>
   int find_samples(const TileNodes& nodes, const TileCaster& caster, const ViewTile& tile,

@@ -31,8 +31,8 @@ DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, FilterKind fil
   require_device_memory(
       pixels * (bytes(wanted.radiance) + bytes(wanted.depth) + bytes(wanted.normal) +
                 bytes(wanted.occlusion) + bytes(wanted.shadow) + bytes(wanted.steps) +
-                bytes(wanted.cell_pixels) + bytes(wanted.coverage) +
-                (with_filter ? sizeof(Vec3f) : 0)) +
+                bytes(wanted.cell_pixels) + bytes(wanted.coverage) + bytes(wanted.albedo) +
+                bytes(wanted.cells) + (with_filter ? sizeof(Vec3f) : 0)) +
           (with_beams ? beams * sizeof(float) : 0),
       what);
   const auto make = [&]<class T>(DeviceBuffer<T>& buffer, const T* values) {
@@ -46,6 +46,8 @@ DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, FilterKind fil
   make(steps_, wanted.steps);
   make(cell_pixels_, wanted.cell_pixels);
   make(coverage_, wanted.coverage);
+  make(albedo_, wanted.albedo);
+  make(cells_, wanted.cells);
   if (with_beams) beam_starts_ = make_device_buffer<float>(beams, what);
   if (with_filter) {
     filtered_ = make_device_buffer<Vec3f>(pixels, what);
@@ -58,12 +60,18 @@ DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, FilterKind fil
   disc_ = upload_table(plan.samples().disc());
   rotations_ = upload_table(plan.samples().rotations());
   hemisphere_ = upload_table(plan.samples().hemisphere());
+  if (SkyMap& map = setup_.sky.map; map.texels != nullptr) {
+    const auto side = static_cast<std::size_t>(map.side);
+    environment_ = upload(std::span(map.texels, side * side), "the environment");
+    map.texels = environment_.data();
+  }
   setup_.tables.square = square_.data();
   setup_.tables.disc = disc_.data();
   setup_.tables.rotations = rotations_.data();
   setup_.tables.hemisphere = hemisphere_.data();
-  setup_.image = {radiance_.data(), depth_.data(), normal_.data(),      occlusion_.data(),
-                  shadow_.data(),   steps_.data(), cell_pixels_.data(), coverage_.data()};
+  setup_.image = {radiance_.data(), depth_.data(),   normal_.data(),      occlusion_.data(),
+                  shadow_.data(),   steps_.data(),   cell_pixels_.data(), albedo_.data(),
+                  cells_.data(),    coverage_.data()};
   setup_.beam_starts = beam_starts_.data();
   if (with_filter) filter_input_ = voxdag::filter_input(setup_.image, camera, filter);
 }
@@ -72,6 +80,8 @@ void DeviceFrame::copy_to(RenderedImage& image, bool is_filtered) const {
   fetch(image.radiance, is_filtered ? filtered_ : radiance_);
   fetch(image.cell_pixels, cell_pixels_);
   fetch(image.coverage, coverage_);
+  fetch(image.albedo, albedo_);
+  fetch(image.cells, cells_);
   fetch(image.depth, depth_);
   fetch(image.normal, normal_);
   fetch(image.occlusion, occlusion_);

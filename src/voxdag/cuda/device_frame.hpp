@@ -29,8 +29,9 @@ class DeviceFrame {
  private:
   DeviceBuffer<Point2f> square_, disc_, rotations_;
   DeviceBuffer<HemisphereSample> hemisphere_;
-  DeviceBuffer<Vec3f> radiance_, normal_, filtered_;
+  DeviceBuffer<Vec3f> radiance_, normal_, albedo_, filtered_, environment_;
   DeviceBuffer<std::uint8_t> cell_pixels_;
+  DeviceBuffer<SeenCell> cells_;
   DeviceBuffer<FilterSample> filter_samples_;
   DeviceBuffer<float> coverage_, depth_, occlusion_, shadow_, steps_, beam_starts_;
   DeviceBuffer<unsigned long long> rays_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "voxdag/core/error.hpp"
 #include "voxdag/cuda/device_frame.hpp"
 #include "voxdag/cuda/device_voxels.hpp"
 #include "voxdag/cuda/picture_launches.hpp"
@@ -69,6 +70,7 @@ struct PartialPicture::State {
 
 PartialPicture::PartialPicture(const DeviceBlocks& blocks, const RenderPlan& plan,
                                const RenderOptions& options, Work work) {
+  if (options.bounces) throw Error("a device cannot trace paths in an ESVO that is streamed");
   blocks.make_current();
   state_ = std::make_shared<State>(blocks, plan, options, work);
 }

@@ -19,6 +19,8 @@ inline LaunchPlan plan_launches(const RenderSetup& setup, std::uint32_t blocks,
   int rays = 1 + setup.settings.occlusion_samples;
   for (int i = 0; i < setup.light_count; ++i)
     rays += setup.lights[i].is_extended() ? setup.settings.light_samples : 1;
+  if (setup.settings.bounces > 0)
+    rays += setup.settings.occlusion_samples * setup.settings.bounces * (1 + setup.light_count);
   return {blocks,
           setup.settings.samples_per_pixel,
           static_cast<double>(rays) * kBlockPixels,

@@ -40,13 +40,13 @@ __device__ void add_of_warp(unsigned long long* sum, unsigned long long count) {
   if (threadIdx.x % 32 == 0) atomicAdd(sum, count);
 }
 
-template <class Nodes, class Caster>
+template <class Scratch, class Nodes, class Caster>
 __global__ void __launch_bounds__(kBlockPixels)
     render_kernel(Nodes nodes, Caster caster, const __grid_constant__ RenderSetup setup,
                   const __grid_constant__ LaunchRange range, const ViewSample* view_samples,
                   unsigned long long* rays) {
-  add_of_warp(rays, render_pixel(nodes, caster, setup, range, view_samples,
-                                 range.first_block + blockIdx.x, threadIdx.x));
+  add_of_warp(rays, render_pixel<Scratch>(nodes, caster, setup, range, view_samples,
+                                          range.first_block + blockIdx.x, threadIdx.x));
 }
 
 __global__ void __launch_bounds__(kBlockPixels)
@@ -56,8 +56,8 @@ __global__ void __launch_bounds__(kBlockPixels)
   const std::uint32_t at = range.first_block + blockIdx.x;
   bool has_missed = false;
   const PartialNodes nodes(voxels, wanted, has_missed);
-  const std::uint64_t count = render_pixel(nodes, ScalarCaster(nodes), setup, range, nullptr,
-                                           blocks[at], threadIdx.x);
+  const std::uint64_t count = render_pixel<TileScratch<1>>(nodes, ScalarCaster(nodes), setup, range,
+                                                           nullptr, blocks[at], threadIdx.x);
   if (has_missed) missed[at] = 1;
   add_of_warp(rays, count);
 }
@@ -110,9 +110,17 @@ void launch_render(const DeviceVoxels& voxels, const RenderSetup& setup, const L
                    const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream) {
   with_all_nodes(
       voxels, [&]<class BeamNodes, class Nodes>(const BeamNodes& beam_nodes, const Nodes& nodes) {
-        launch("rendering", render_kernel<BeamNodes, ScalarCaster<Nodes>>,
-               range.last_block - range.first_block, kBlockPixels, stream, beam_nodes,
-               ScalarCaster(nodes), setup, range, view_samples, rays);
+        const auto run = [&]<class Scratch>(const Scratch*) {
+          launch("rendering", render_kernel<Scratch, BeamNodes, ScalarCaster<Nodes>>,
+                 range.last_block - range.first_block, kBlockPixels, stream, beam_nodes,
+                 ScalarCaster(nodes), setup, range, view_samples, rays);
+        };
+        // Two kernels, because one that can trace paths needs more registers.
+        using Paths = TileScratch<1, PathScratch<1>>;
+        if (setup.settings.bounces >= 0)
+          run(static_cast<const Paths*>(nullptr));
+        else
+          run(static_cast<const TileScratch<1>*>(nullptr));
       });
 }
 

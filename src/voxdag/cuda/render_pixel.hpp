@@ -50,8 +50,9 @@ VOXDAG_HD constexpr int thread_y(std::uint32_t thread) {
 
 /// Renders the samples of a launch for a thread's pixel. Returns the number of rays. `view_samples`
 /// has the view samples of all blocks of the launch, kBlockPixels for each, row by row; it is null
-/// for a picture of voxels. With view samples a launch has one sample per pixel.
-template <class Nodes, class Caster>
+/// for a picture of voxels. With view samples a launch has one sample per pixel. `Scratch` is a
+/// TileScratch for one pixel.
+template <class Scratch, class Nodes, class Caster>
 VOXDAG_HD inline std::uint64_t render_pixel(const Nodes& nodes, const Caster& caster,
                                             const RenderSetup& setup, const LaunchRange& range,
                                             const ViewSample* view_samples, std::uint32_t block,
@@ -63,13 +64,13 @@ VOXDAG_HD inline std::uint64_t render_pixel(const Nodes& nodes, const Caster& ca
   tile.x = part.x + x;
   tile.y = part.y + y;
   tile.width = tile.height = 1;
-  const auto find = [&](const ViewTile& at, TileScratch<1>& scratch) {
+  const auto find = [&](const ViewTile& at, Scratch& scratch) {
     if (view_samples == nullptr) return trace_view_samples(nodes, caster, setup, at, scratch);
     const std::uint32_t first = (block - range.first_block) * kBlockPixels;
     scratch.samples[0] = view_samples[first + static_cast<std::uint32_t>(y * part.width + x)];
     return 1;
   };
-  TileScratch<1> scratch;
+  Scratch scratch;
   std::uint64_t rays = 0;
   for (int i = range.first_sample; i < range.last_sample; ++i) {
     set_sample(tile, i);

@@ -5,7 +5,7 @@
 #include "voxdag/image/image_limits.hpp"
 #include "voxdag/image/jpeg.hpp"
 #include "voxdag/image/png.hpp"
-#include "voxdag/image/tga_bmp.hpp"
+#include "voxdag/image/stb_formats.hpp"
 #include "voxdag/image/webp.hpp"
 
 namespace voxdag {

@@ -3,6 +3,7 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
 
@@ -10,6 +11,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/image/image_limits.hpp"
 
 namespace voxdag {
 namespace {
@@ -61,6 +63,47 @@ void write_exr(const std::filesystem::path& path, const ImageF& image,
     throw;
   } catch (const std::exception& e) {
     throw Error(path.string(), "", std::string("cannot write: ") + e.what());
+  }
+}
+
+ImageF decode_exr(std::span<const std::uint8_t> bytes, const std::string& name) {
+  try {
+    Imf::StdISStream stream;
+    stream.str({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    Imf::InputFile in(stream);
+    const Imath::Box2i window = in.header().dataWindow();
+    const auto side = [](int low, int high) {
+      return high < low ? std::uint64_t{0}
+                        : static_cast<std::uint64_t>(std::int64_t{high} - low + 1);
+    };
+    check_image_size(name, side(window.min.x, window.max.x), side(window.min.y, window.max.y));
+    const Imf::ChannelList& channels = in.header().channels();
+    const bool is_grey = channels.findChannel("R") == nullptr;
+    ImageF image(static_cast<int>(side(window.min.x, window.max.x)),
+                 static_cast<int>(side(window.min.y, window.max.y)), 3);
+    Imf::FrameBuffer frame;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const char* const color[] = {"R", "G", "B"};
+      const char* const channel = is_grey ? "Y" : color[c];
+      const Imf::Channel* found = channels.findChannel(channel);
+      if (found == nullptr || found->xSampling != 1 || found->ySampling != 1)
+        throw Error(name, "header", "the EXR has neither the channels R, G and B nor Y");
+      if (is_grey && c > 0) break;
+      Imf::Slice slice = slice_of(image, c);
+      slice.base -= window.min.x * static_cast<std::ptrdiff_t>(slice.xStride) +
+                    window.min.y * static_cast<std::ptrdiff_t>(slice.yStride);
+      frame.insert(channel, slice);
+    }
+    in.setFrameBuffer(frame);
+    in.readPixels(window.min.y, window.max.y);
+    if (is_grey)
+      for (std::size_t i = 0; i < image.pixels.size(); i += 3)
+        image.pixels[i + 1] = image.pixels[i + 2] = image.pixels[i];
+    return image;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw Error(name, "", std::string("cannot read: ") + e.what());
   }
 }
 

@@ -17,8 +17,16 @@
 
 namespace voxdag {
 
-/// Returns ray `i` of a point. The directions are distributed around the shading normal. Directions
-/// below the plane of the surface itself, whose normal may differ, are mirrored at that plane.
+/// Returns a direction of the hemisphere around (0,0,1), turned to the point's shading normal. If
+/// it lies below the plane of the surface itself, whose normal may differ, it is mirrored there.
+VOXDAG_HD inline Vec3f around_normal(const SurfacePoint& point, Vec3f local) {
+  const Basis<float> basis = make_basis(point.normal);
+  const Vec3f direction = basis.u * local.x + basis.v * local.y + point.normal * local.z;
+  const float above = dot(direction, point.face);
+  return above < 0 ? direction - point.face * (2 * above) : direction;
+}
+
+/// Returns ray `i` of a point, around its normal.
 /// `longest` is in units of the grid's side; `cone` as in RenderSettings::occlusion_cone.
 /// `make_ray(direction, t_max)` makes the ray.
 template <class MakeRay>
@@ -26,11 +34,8 @@ VOXDAG_HD inline CastRay occlusion_ray(const SampleTables& tables, float longest
                                        const SurfacePoint& point, const PixelSamples& pixel, int i,
                                        const MakeRay& make_ray) {
   const HemisphereSample sample = tables.hemisphere[pixel.set * tables.hemisphere_count + i];
-  const Basis<float> basis = make_basis(point.normal);
   const Point2f flat = pixel.rotated({sample.direction.x, sample.direction.y});
-  Vec3f direction = basis.u * flat.x + basis.v * flat.y + point.normal * sample.direction.z;
-  const float above = dot(direction, point.face);
-  if (above < 0) direction = direction - point.face * (2 * above);
+  const Vec3f direction = around_normal(point, {flat.x, flat.y, sample.direction.z});
   CastRay ray;
   ray.ray = make_ray(direction, sample.reach * longest);
   ray.stop.at_start = point.cell_side;

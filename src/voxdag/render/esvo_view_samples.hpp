@@ -1,5 +1,5 @@
 #pragma once
-/// The primary rays of a tile at an ESVO: shapes cut by contours, with colours and normals.
+/// What rays show of an ESVO: shapes cut by contours, with colours and normals.
 #include "voxdag/render/surface_point.hpp"
 #include "voxdag/render/voxel_view_samples.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
@@ -24,23 +24,22 @@ VOXDAG_HD inline ContourPlane deepest_contour(const EsvoView& esvo, const GridRa
   }
 }
 
-/// Returns the view sample at which a primary ray hit a shape. `direction` is the ray's direction,
-/// in world units.
+/// Does for an ESVO what view_sample_of() in voxel_view_samples.hpp does for a DAG.
 template <EsvoLayout Nodes>
-VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSetup& setup,
-                                             Vec3d direction, const GridRay& ray,
-                                             const EsvoHit& hit) {
+VOXDAG_HD inline ViewSample view_sample_of(const Nodes& nodes, const RenderSetup& setup,
+                                           const SightLine& line, const GridRay& ray,
+                                           const EsvoHit& hit, double depth) {
   // The height to which the shapes of neighbours may rise above the visible plane: in units of the
   // slab's thickness, and in units of the cells that represent a surface at this depth.
   constexpr float kSlabs = 1.0f, kCells = 0.5f;
   constexpr float kTrusted = 0.5f;  // a cosine
   const EsvoView& esvo = nodes.view();
-  const double depth = ray.to_world_t(static_cast<double>(hit.t));
+  const double t = ray.to_world_t(static_cast<double>(hit.t));
   const auto side = static_cast<float>(setup.side());
   const float voxel_size =
       side * float_from_bits(static_cast<std::uint32_t>(127 - hit.level) << 23);
   const float visible_size = cell_size_at(setup, depth);
-  const Vec3f view = -static_cast<Vec3f>(normalized(direction));
+  const Vec3f view = -static_cast<Vec3f>(normalized(line.direction));
   const Vec3f entered = entered_normal(ray, hit);
   const Vec3f plane = dot(entered, entered) > 0 ? entered : view;
   const ContourPlane deepest =
@@ -61,11 +60,11 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
       sample.normal = normalized(mix(plane, sample.normal, trust));
     }
   }
-  sample.depth = static_cast<float>(depth);
+  sample.depth = static_cast<float>(t);
   // A leaf may be much coarser than the voxels that cast shadows on it.
   sample.cell_size = voxel_size;
   sample.detail_size = visible_size < voxel_size ? visible_size : voxel_size;
-  sample.point = setup.camera.eye + direction * depth;
+  sample.point = line.origin + line.direction * t;
   if (hit.is_through_contour()) {
     sample.face = plane;
   } else {
@@ -86,26 +85,6 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
     sample.lift = above < sample.lift ? above : sample.lift;
   }
   return sample;
-}
-
-/// Does for an ESVO what trace_view_samples() in voxel_view_samples.hpp does for a DAG.
-template <EsvoLayout Nodes, class Caster, class Scratch>
-VOXDAG_HD inline int trace_view_samples(const Nodes& nodes, const Caster& caster,
-                                        const RenderSetup& setup, const ViewTile& tile,
-                                        Scratch& scratch) {
-  caster.closest(
-      tile.width * tile.height, [&](int pixel) { return primary_ray(setup, tile, pixel); },
-      [&](int pixel, const GridRay& ray, const EsvoHit& hit, bool is_hit) {
-        ViewSample& sample = scratch.samples[pixel];
-        sample = ViewSample{};
-        if (!is_hit) return;
-        const Vec3d direction = pixel_direction(setup, tile, pixel);
-        const Vec3f cut = hit.t == ray.t_min ? cut_normal(setup.section, ray) : Vec3f{};
-        const double depth = ray.to_world_t(static_cast<double>(hit.t));
-        sample = dot(cut, cut) > 0 ? cut_view_sample(setup, direction, hit.level, depth, cut)
-                                   : esvo_view_sample(nodes, setup, direction, ray, hit);
-      });
-  return tile.width * tile.height;
 }
 
 }  // namespace voxdag

@@ -1,8 +1,10 @@
 #pragma once
 /// The options of a picture, and the rendered picture.
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "voxdag/render/environment.hpp"
 #include "voxdag/render/filter_kind.hpp"
 #include "voxdag/render/light.hpp"
 #include "voxdag/render/render_setup.hpp"
@@ -24,6 +26,7 @@ struct RenderLimits {
   static constexpr double kSky = 1e6;
   static constexpr int kOcclusionSamples = 4096;
   static constexpr double kOcclusionCone = 6;  ///< Steradians.
+  static constexpr int kBounces = 64;
   static constexpr double kLodPixels = 1000, kCubePixels = 1e6;
 };
 
@@ -35,6 +38,7 @@ struct SectionOptions {
     Vec3d point, normal;  ///< The normal is not zero.
   };
   std::optional<Plane> plane;
+  bool hatch = false;  ///< Draw lines on the surfaces where the section cuts voxels.
 };
 
 /// The background of a picture, where it shows no surface. Only the colours of the sky depend on
@@ -55,6 +59,10 @@ struct RenderOptions {
   bool shadows = true;
   int shadow_samples = 16;  ///< Shadow rays per pixel and light with soft edges.
   float sky = 1;            ///< Factor on the light of the sky, and on the sky in the picture.
+  /// The light from all directions instead of the clear sky, and its sun instead of the default
+  /// one; null: the clear sky. Without a sun of its own there is only one if `sun` is set.
+  std::shared_ptr<const Environment> environment;
+  double environment_degrees = 0;  ///< Turns the environment to the left around the up vector.
 
   int occlusion_samples = 64;  ///< Rays of ambient occlusion per pixel; 0: none.
   /// Length of occlusion rays, in world units; 0 means kOcclusionDistance or kInteriorOcclusion.
@@ -62,6 +70,10 @@ struct RenderOptions {
   /// Occlusion rays end at cells that subtend this solid angle, in steradians; 0 means cells of the
   /// size of the surface's cell. The paper uses 0.07.
   double occlusion_cone = 0;
+  /// If set, the light of the sky and of surfaces arrives by tracing paths (path_light.hpp),
+  /// reflected up to this many times (0 to 64), instead of by ambient occlusion: a reference.
+  /// Needs occlusion_samples, the number of paths per pixel; each has no longest distance.
+  std::optional<int> bounces;
 
   /// Rays see only this part. Surfaces where it cuts voxels have a colour of their own.
   SectionOptions section;
@@ -88,6 +100,10 @@ struct RenderOptions {
   bool with_occlusion = true;  ///< Fill RenderedImage::occlusion; the guided filter does, too.
   bool with_shadow = true;     ///< Fill RenderedImage::shadow; the guided filter does, too.
   bool with_steps = false;     ///< Fill RenderedImage::steps.
+  bool with_albedo = false;    ///< Fill RenderedImage::albedo.
+  bool with_cells = false;     ///< Fill RenderedImage::cells.
+  bool with_material = false;  ///< Fill RenderedImage::material and cells. Needs `materials`.
+  ColoredDagView materials;    ///< The materials of the voxels, in the memory of the host.
   int tile_size = 32;          ///< Pixels, 1 to 32. Pictures do not depend on it.
 };
 
@@ -106,6 +122,9 @@ struct RenderedImage {
   std::vector<float> occlusion;  ///< The part of the sky's light that arrives, 0 to 1.
   std::vector<float> shadow;     ///< The part of the lights' light that arrives, 0 to 1.
   std::vector<float> steps;      ///< Steps of primary rays and beams; empty unless with_steps.
+  std::vector<Vec3f> albedo;     ///< Linear diffuse colour; zero where nothing is.
+  std::vector<SeenCell> cells;   ///< Cells of voxels; level -1 where nothing is, or of a mesh.
+  std::vector<float> material;   ///< Ids; -1 where nothing is, or without a material.
   std::vector<std::uint8_t> cell_pixels;  ///< See pack_cell_pixels(); empty without filter.
   std::uint64_t rays = 0;                 ///< Rays cast: primary, shadow, occlusion.
 };
@@ -113,9 +132,10 @@ struct RenderedImage {
 /// Returns the addresses of the image's values; null for values that it does not have.
 inline ImageBuffers buffers_of(RenderedImage& image) {
   const auto values = [](auto& pixels) { return pixels.empty() ? nullptr : pixels.data(); };
-  return {values(image.radiance),    values(image.depth),   values(image.normal),
-          values(image.occlusion),   values(image.shadow),  values(image.steps),
-          values(image.cell_pixels), values(image.coverage)};
+  return {values(image.radiance),    values(image.depth),  values(image.normal),
+          values(image.occlusion),   values(image.shadow), values(image.steps),
+          values(image.cell_pixels), values(image.albedo), values(image.cells),
+          values(image.coverage)};
 }
 
 }  // namespace voxdag

@@ -9,6 +9,7 @@
 #include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/render/coarse_cells.hpp"
 #include "voxdag/render/exposure.hpp"
+#include "voxdag/render/hatch.hpp"
 #include "voxdag/render/tone_map.hpp"
 
 namespace voxdag {
@@ -34,8 +35,14 @@ const RenderOptions& checked(const RenderOptions& options) {
     throw Error("the distance of ambient occlusion must be finite and not negative");
   if (!(options.occlusion_cone >= 0 && options.occlusion_cone < 2 * std::numbers::pi))
     throw Error("the solid angle of occlusion cones must be at least 0 and below 2 pi steradians");
+  if (options.bounces && (*options.bounces < 0 || *options.bounces > RenderLimits::kBounces))
+    throw Error("light must bounce 0 to 64 times");
+  if (options.bounces && options.occlusion_samples == 0)
+    throw Error("light that bounces needs at least one occlusion ray per pixel");
   if (!(options.sun_degrees >= 0 && options.sun_degrees < 90))
     throw Error("the sun's angle must be at least 0 and below 90 degrees");
+  if (!std::isfinite(options.environment_degrees))
+    throw Error("the turn of the environment must be finite");
   if (!(options.sky >= 0 && options.sky < HUGE_VALF))
     throw Error("the sky's factor must be finite and not negative");
   if (options.lights.size() >= RenderSetup::kMaxLights)
@@ -60,6 +67,30 @@ SampleSets make_samples(const RenderOptions& options) {
   return {light_rays, std::max(1, occlusion_rays)};
 }
 
+/// Returns the mean luminance of the clear sky and the ground.
+float clear_luminance() {
+  const Sky sky;
+  return luminance(sky_ambient(sky, sky.up) + sky_ambient(sky, -sky.up)) / 2;
+}
+
+/// Returns the direction towards the environment's sun in the world, or up if it has none.
+Vec3d sun_of(const Environment& environment, const SkyMap& map) {
+  const Vec3f at = environment.sun_direction();
+  const Vec3f sun = map.right * at.x + map.up * at.y + map.back * at.z;
+  return static_cast<Vec3d>(dot(sun, sun) > 0 ? sun : map.up);
+}
+
+/// Returns the irradiance of a surface that faces the sun; nothing for the default, zero if there
+/// is no sun.
+std::optional<Vec3f> sun_color(const RenderOptions& options) {
+  if (!options.environment) return std::nullopt;
+  const Vec3f color = options.environment->sun_irradiance();
+  if (dot(color, color) > 0 || !options.sun) return color;
+  // The sun of the clear sky, in the units of the environment.
+  return Sky{}.sun_light *
+         (std::numbers::pi_v<float> * options.environment->mean_luminance() / clear_luminance());
+}
+
 /// Returns the sky with the sun's direction. The default direction shows the shapes in view well.
 Sky make_sky(const Camera& camera, const View& view, const RenderOptions& options,
              const std::optional<Vec3d>& interior_sun) {
@@ -67,9 +98,15 @@ Sky make_sky(const Camera& camera, const View& view, const RenderOptions& option
   const Vec3d up = normalized(view.up);
   const Vec3d right = normalized(camera.right);
   const Vec3d back = cross(right, up);
+  if (options.environment) {
+    sky.map = options.environment->map(static_cast<Vec3f>(up), options.environment_degrees);
+    sky.map.scale = options.sky;
+  }
   const Vec3d sun = options.sun ? *options.sun
-                                : interior_sun.value_or(up * kDefaultSun.y + right * kDefaultSun.x +
-                                                        back * kDefaultSun.z);
+                    : options.environment
+                        ? sun_of(*options.environment, sky.map)
+                        : interior_sun.value_or(up * kDefaultSun.y + right * kDefaultSun.x +
+                                                back * kDefaultSun.z);
   const double length2 = dot(sun, sun);
   if (!(length2 > 0 && length2 < HUGE_VAL))
     throw Error("the direction of the sun must be finite and not zero");
@@ -130,7 +167,11 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
     : samples_(make_samples(checked(options))),
       exposure_(options.exposure),
       tone_(options.tone),
-      background_(options.background) {
+      background_(options.background),
+      materials_(options.materials),
+      environment_(options.environment) {
+  if (options.with_material && !options.materials.attributes.has_materials())
+    throw Error("the pass material needs voxels with material ids");
   assert(grid.levels == voxels.levels());
   const std::size_t pixels =
       static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
@@ -146,6 +187,8 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
   if (options.with_occlusion || is_guided) image_.occlusion.resize(pixels);
   if (options.with_shadow || is_guided) image_.shadow.resize(pixels);
   if (options.with_steps) image_.steps.resize(pixels);
+  if (options.with_albedo) image_.albedo.resize(pixels);
+  if (options.with_cells || options.with_material) image_.cells.resize(pixels);
   if (options.filter != FilterKind::kNone) image_.cell_pixels.resize(pixels);
 
   setup_.grid = grid;
@@ -175,9 +218,14 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
                          : is_interior                  ? kInteriorOcclusion
                                                         : kOcclusionDistance);
   settings.occlusion_cone = static_cast<float>(std::sqrt(options.occlusion_cone));
+  settings.bounces = options.bounces.value_or(-1);
   settings.lod_pixels = options.lod_pixels;
   settings.cube_pixels = options.cube_pixels;
   settings.beams = options.beams;
+  if (options.section.hatch && setup_.section.is_on)
+    settings.hatch_period =
+        hatch_period(setup_.camera.pixel_size() * options.height *
+                     length(image_.view.target - image_.view.eye) / setup_.side());
   settings.albedo = options.albedo;
   settings.specular = options.specular;
 
@@ -186,16 +234,29 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
     sun.kind = LightKind::kSun;
     sun.position = static_cast<Vec3d>(setup_.sky.sun);
     sun.radius = std::tan(options.sun_degrees * std::numbers::pi / 360);
-    setup_.lights[setup_.light_count++] = make_light(sun, grid);
+    sun.color = sun_color(options);
+    if (!sun.color || dot(*sun.color, *sun.color) > 0)
+      setup_.lights[setup_.light_count++] = make_light(sun, grid);
   }
   for (const LightSpec& light : options.lights)
     setup_.lights[setup_.light_count++] = make_light(light, grid);
 }
 
+std::uint32_t RenderPlan::material_of(const SeenCell& cell) const {
+  const int shift = setup_.grid.levels - cell.level;
+  return material_at(materials_,
+                     {cell.voxel.x >> shift, cell.voxel.y >> shift, cell.voxel.z >> shift},
+                     cell.level);
+}
+
 Vec3f RenderPlan::background_at(Vec3f sky) const {
   switch (background_) {
     case Background::kSky:
-      return tone_map(tone_, sky * ExposureRule::kSky);
+      // An environment is exposed as if it were as bright as the clear sky.
+      return tone_map(
+          tone_,
+          sky * (ExposureRule::kSky *
+                 (environment_ ? clear_luminance() / environment_->mean_luminance() : 1.0f)));
     case Background::kGrey:
       return {kGreyBackground, kGreyBackground, kGreyBackground};
     case Background::kWhite:
@@ -214,6 +275,14 @@ RenderedImage RenderPlan::finish(RenderedImage image) const {
     if (is_mixed(i)) image.radiance[i] = image.radiance[i] * (1 / image.coverage[i]);
   });
   image.exposure = exposure_ > 0 ? exposure_ : automatic_exposure(image.radiance, image.depth);
+  if (materials_.attributes.has_materials()) {
+    image.material.resize(image.cells.size());
+    parallel_for(image.cells.size(), kPixelsPerTask, [&](std::size_t i) {
+      const SeenCell& cell = image.cells[i];
+      const std::uint32_t id = cell.level < 0 ? kMaxMaterials : material_of(cell);
+      image.material[i] = id == kMaxMaterials ? -1.0f : static_cast<float>(id);
+    });
+  }
   image.has_alpha = background_ == Background::kTransparent;
   image.rgb.resize(image.radiance.size());
   parallel_for(image.rgb.size(), kPixelsPerTask, [&](std::size_t i) {

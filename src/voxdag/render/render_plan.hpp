@@ -30,6 +30,8 @@ class RenderPlan {
  private:
   /// Returns the colour of the background where the sky has this radiance.
   Vec3f background_at(Vec3f sky) const;
+  /// Returns the id of a cell's material; kMaxMaterials if it has none.
+  std::uint32_t material_of(const SeenCell& cell) const;
 
   SampleSets samples_;
   RenderedImage image_;
@@ -37,6 +39,8 @@ class RenderPlan {
   float exposure_ = 0;
   ToneMap tone_;
   Background background_;
+  ColoredDagView materials_;
+  std::shared_ptr<const Environment> environment_;  ///< Owns the map of the setup's sky.
 };
 
 }  // namespace voxdag

@@ -8,6 +8,7 @@
 #include "voxdag/render/sample_tables.hpp"
 #include "voxdag/render/sky.hpp"
 #include "voxdag/render/specular.hpp"
+#include "voxdag/render/view_sample.hpp"
 #include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/trace/ray_section.hpp"
 
@@ -26,13 +27,17 @@ struct RenderSettings {
   /// Occlusion rays end at cells of this side at distance 1; 0 means cells of the size of the
   /// surface's cell.
   float occlusion_cone = 0;
+  /// Light reflected up to this many times arrives, by paths (path_light.hpp): occlusion_samples
+  /// paths per view sample. -1: no paths, but ambient occlusion.
+  int bounces = -1;
   /// Casts end at cells of at most this many pixels, so that voxels smaller than pixels do not
   /// cause noise; 0 means always at voxels.
   float lod_pixels = 1;
   /// Cells of at least this many pixels are shaded as cubes, cells of at most half as many as a
   /// smooth surface; 0 means always cubes.
   float cube_pixels = 24;
-  bool beams = true;  ///< Shorten rays by beams. The picture does not depend on it.
+  float hatch_period = 0;  ///< Of the lines on cut faces, in grid sides; 0: none. See hatch.hpp.
+  bool beams = true;       ///< Shorten rays by beams. The picture does not depend on it.
   Vec3f albedo{0.62f, 0.60f, 0.57f};
   Specular specular;
 };
@@ -49,6 +54,8 @@ struct ImageBuffers {
   float* steps = nullptr;   ///< Steps of the first sample's primary ray and its part of the beams.
   /// Size of the first sample's cell, see pack_cell_pixels(); 0 if the sample hit nothing.
   std::uint8_t* cell_pixels = nullptr;
+  Vec3f* albedo = nullptr;    ///< First sample's diffuse colour, linear; zero if it hit nothing.
+  SeenCell* cells = nullptr;  ///< First sample's cell.
   float* coverage = nullptr;  ///< Part of the samples that hit a surface.
 };
 

@@ -8,12 +8,13 @@
 #include "voxdag/render/cell_pixels.hpp"
 #include "voxdag/render/direct_light.hpp"
 #include "voxdag/render/ground.hpp"
+#include "voxdag/render/path_light.hpp"
 #include "voxdag/render/voxel_view_samples.hpp"
 
 namespace voxdag {
 
-/// Returns the sky's light on a surface. `open` is the fraction of light that is not occluded, 0 to
-/// 1.
+/// Returns the sky's light on a surface, divided by pi. `open` is the fraction of light that is not
+/// occluded, 0 to 1.
 VOXDAG_HD inline Vec3f sky_light(const RenderSetup& setup, const ViewSample& sample, Vec3f view,
                                  float open) {
   const Vec3f light = sky_ambient(setup.sky, sample.normal);
@@ -26,10 +27,11 @@ VOXDAG_HD inline Vec3f sky_light(const RenderSetup& setup, const ViewSample& sam
   return light * (fill > 0 ? fill : 0.0f);
 }
 
-/// Shades the tile's view samples and adds them to the picture.
-template <class Scratch>
+/// Shades the tile's view samples and adds them to the picture. `ambient(pixel, open)` returns the
+/// light that comes neither from sun nor lamps, divided by pi.
+template <class Scratch, class Ambient>
 VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
-                                 const Scratch& scratch) {
+                                 const Scratch& scratch, const Ambient& ambient) {
   const RenderSettings& settings = setup.settings;
   const ImageBuffers& image = setup.image;
   const float share = 1.0f / static_cast<float>(settings.samples_per_pixel);
@@ -39,7 +41,6 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
         static_cast<std::size_t>(y) * static_cast<std::size_t>(setup.camera.width) +
         static_cast<std::size_t>(x);
     const ViewSample& sample = scratch.samples[pixel];
-    const auto direction = static_cast<Vec3f>(normalized(pixel_direction(setup, tile, pixel)));
     const bool is_hit = scratch.points[pixel].is_hit();
     float open = 1, lit = 1, covered = is_hit ? 1.0f : 0.0f;
     Vec3f radiance;
@@ -56,9 +57,7 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
                static_cast<float>(settings.occlusion_samples);
       if (scratch.unhindered_sum[pixel] > 0)
         lit = scratch.lit_sum[pixel] / scratch.unhindered_sum[pixel];
-      radiance =
-          (sky_light(setup, sample, -direction, open) + scratch.irradiance[pixel] * kInversePi) *
-          sample.albedo;
+      radiance = (ambient(pixel, open) + scratch.irradiance[pixel] * kInversePi) * sample.albedo;
       if (settings.specular.is_on()) radiance = radiance + scratch.highlights[pixel];
     }
     const bool is_first = tile.sample_index == 0;
@@ -73,6 +72,9 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
     if (is_first && image.depth != nullptr) image.depth[at] = is_surface ? sample.depth : HUGE_VALF;
     if (is_first && image.normal != nullptr)
       image.normal[at] = is_surface ? sample.normal : Vec3f{};
+    if (is_first && image.albedo != nullptr)
+      image.albedo[at] = is_surface ? sample.albedo : Vec3f{};
+    if (is_first && image.cells != nullptr) image.cells[at] = sample.cell;
     if (is_first && image.cell_pixels != nullptr) {
       const double side = setup.camera.pixel_size() * static_cast<double>(sample.depth);
       image.cell_pixels[at] = pack_cell_pixels(
@@ -98,15 +100,27 @@ VOXDAG_HD inline int render_sample(const Nodes& nodes, const Caster& caster,
       scratch.points[pixel] = ground_point(setup, sample);
     else if (sample.is_hit())
       scratch.points[pixel] =
-          make_surface_point(nodes, setup, sample, pixel_direction(setup, tile, pixel));
+          make_surface_point(nodes, setup, sample, pixel_line(setup, tile, pixel));
     scratch.irradiance[pixel] = {};
     if (setup.settings.specular.is_on()) scratch.highlights[pixel] = {};
     scratch.lit_sum[pixel] = scratch.unhindered_sum[pixel] = 0;
   }
   for (int light = 0; light < setup.light_count; ++light)
     rays += trace_light(nodes, caster, setup, light, tile, scratch);
+  if constexpr (Scratch::kWithPaths) {
+    if (setup.settings.bounces >= 0) {
+      rays += trace_paths(nodes, caster, setup, tile, scratch, scratch.paths);
+      const float share = 1.0f / static_cast<float>(setup.settings.occlusion_samples);
+      shade_tile(setup, tile, scratch,
+                 [&](int pixel, float /*open*/) { return scratch.paths.gathered[pixel] * share; });
+      return rays;
+    }
+  }
   if (setup.settings.occlusion_samples > 0) rays += trace_occlusion(caster, setup, tile, scratch);
-  shade_tile(setup, tile, scratch);
+  shade_tile(setup, tile, scratch, [&](int pixel, float open) {
+    const Vec3d direction = normalized(pixel_direction(setup, tile, pixel));
+    return sky_light(setup, scratch.samples[pixel], -static_cast<Vec3f>(direction), open);
+  });
   return rays;
 }
 

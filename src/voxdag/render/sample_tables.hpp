@@ -60,16 +60,21 @@ VOXDAG_HD inline std::uint32_t hash_bits(std::uint32_t v) {
   return v ^ v >> 16;
 }
 
-/// Returns the set and rotation of a pixel for a `purpose`: 0 is occlusion, 1 + i is light i.
-VOXDAG_HD inline PixelSamples pixel_samples(const SampleTables& tables, int x, int y, int purpose) {
-  const std::uint32_t column = hash_bits(static_cast<std::uint32_t>(x));
-  const std::uint32_t row = hash_bits(column + static_cast<std::uint32_t>(y));
-  const std::uint32_t bits = hash_bits(row + static_cast<std::uint32_t>(purpose) * 0x9E3779B9u);
+/// Returns the set and rotation that random bits select.
+VOXDAG_HD inline PixelSamples samples_of_hash(const SampleTables& tables, std::uint32_t bits) {
   const std::uint32_t more = hash_bits(bits);
   constexpr float kScale = 1.0f / 65536;
   return {static_cast<int>(bits % SampleTables::kSets),
           tables.rotations[bits / SampleTables::kSets % SampleTables::kRotations],
           {static_cast<float>(more & 0xFFFFu) * kScale, static_cast<float>(more >> 16) * kScale}};
+}
+
+/// Returns the set and rotation of a pixel for a `purpose`: 0 is occlusion, 1 + i is light i.
+VOXDAG_HD inline PixelSamples pixel_samples(const SampleTables& tables, int x, int y, int purpose) {
+  const std::uint32_t column = hash_bits(static_cast<std::uint32_t>(x));
+  const std::uint32_t row = hash_bits(column + static_cast<std::uint32_t>(y));
+  return samples_of_hash(tables,
+                         hash_bits(row + static_cast<std::uint32_t>(purpose) * 0x9E3779B9u));
 }
 
 /// Owns the tables.

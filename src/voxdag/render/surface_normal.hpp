@@ -1,5 +1,5 @@
 #pragma once
-/// Estimates a smooth normal for a cell from the cells around it.
+/// Estimates a smooth surface at a cell from the cells around it.
 ///
 /// The voxels of a surface form a layer. Let C be the covariance of the occupied cells within 4.5
 /// cells, with weights that fall to zero at that distance. Its eigenvalues are small across the
@@ -43,7 +43,14 @@ struct CovarianceMatrix {
 struct LayerFit {
   Vec3f normal;         ///< Unit length.
   float thickness = 0;  ///< Variance of the cells along the normal, in cells².
-  float outwards = 0;   ///< Distance of the cell from the layer's mean along the normal, in cells.
+  Vec3f mean{};         ///< From the point to the mean of the cells, in cells.
+};
+
+/// The smooth surface at a cell.
+struct SmoothSurface {
+  Vec3f normal;       ///< Unit length.
+  float height = 0;   ///< Of the surface above the cell's centre along the normal, in cells.
+  float is_flat = 0;  ///< 1 where the height is that of a layer, 0 at edges.
 };
 
 /// The numbers of fit_layer() and surface_normal(). Thicknesses are variances along the normal, in
@@ -91,7 +98,7 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
       moments.add_outer_product(d, w);
     }
   }
-  if (!(weight > 0)) return {front, 0, 0};
+  if (!(weight > 0)) return {front, 0, {}};
   mean = mean * (1 / weight);
   // The variance of a cell's own extent, 1/12, keeps the matrix regular.
   CovarianceMatrix covariance{1.0f / 12, 1.0f / 12, 1.0f / 12};
@@ -106,23 +113,24 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
   const CovarianceMatrix inverse = covariance.adjugate();
   Vec3f normal = front;
   for (int i = 0; i < LayerRule::kPower; ++i) normal = normalized(inverse * normal);
-  return {normal, dot(normal, covariance * normal), -dot(normal, mean)};
+  return {normal, dot(normal, covariance * normal), mean};
 }
 
-/// Returns the unit normal of the surface at `cell` of `level` (2..L). `view` is the unit vector to
+/// Returns the surface at `cell` of `level` (2..L), with a normal of unit length. `view` is the unit vector to
 /// the viewer, `face` the normal of the face that the ray entered (or `view`). At outlines these
 /// two can lie on different sides of the layer. Then the side on which the cell lies counts as the
-/// outer side, because outlines are convex. Where an edge turns away from the viewer, returns
+/// outer side, because outlines are convex. Where an edge turns away from the viewer, the normal is
 /// `face`.
 template <class Nodes>
-VOXDAG_HD inline Vec3f surface_normal(const Nodes& nodes, int level, Vec3i cell, Vec3f view,
-                                      Vec3f face) {
+VOXDAG_HD inline SmoothSurface smooth_surface(const Nodes& nodes, int level, Vec3i cell, Vec3f view,
+                                              Vec3f face) {
   using Rule = LayerRule;
   const Vec3f front = normalized(view + face);
   const LayerFit fine = fit_layer(nodes, level, cell, {}, front);
   Vec3f normal = fine.normal;
   const float edge = smooth_step(Rule::kPlane, Rule::kEdge, fine.thickness);
-  if ((dot(normal, view) < 0) != (dot(normal, face) < 0) && fine.outwards < 0) normal = -normal;
+  if ((dot(normal, view) < 0) != (dot(normal, face) < 0) && dot(normal, fine.mean) > 0)
+    normal = -normal;
   const float outline = edge * smooth_step(Rule::kOutlineCosine, 0, dot(normal, view));
   normal = normalized(mix(normal, face, outline));
   for (int up = 1; up <= Rule::kCoarser && level - up >= 2; ++up) {
@@ -135,7 +143,7 @@ VOXDAG_HD inline Vec3f surface_normal(const Nodes& nodes, int level, Vec3i cell,
     if (trust <= 0) break;
     normal = normalized(mix(normal, fit.normal, trust));
   }
-  return normal;
+  return {normal, dot(normal, fine.mean), 1 - edge};
 }
 
 }  // namespace voxdag

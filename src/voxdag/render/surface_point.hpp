@@ -65,10 +65,10 @@ VOXDAG_HD inline float cell_size_at(const RenderSetup& setup, double depth) {
 inline constexpr int kMaxStartCasts = 13;
 
 /// Returns the point for a view sample that hit something and lies on the surface or above it.
-/// `direction` is the direction of the camera's ray to the sample.
+/// `line` is the one along which the sample is seen.
 template <class Nodes>
 VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const RenderSetup& setup,
-                                                 const ViewSample& sample, Vec3d direction) {
+                                                 const ViewSample& sample, const SightLine& line) {
   SurfacePoint point;
   point.surface = make_grid_point(setup.grid, sample.point);
   point.normal = sample.normal;
@@ -81,7 +81,7 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
           ? static_cast<double>(sample.lift)
           : static_cast<double>(cube_height(sample.face) + StartRule::kSlack) * cell_size;
   const Vec3d lifted = sample.point + static_cast<Vec3d>(sample.face) * lift;
-  const Vec3f to_viewer = -static_cast<Vec3f>(normalized(direction));
+  const Vec3f to_viewer = -static_cast<Vec3f>(normalized(line.direction));
   const auto can_start_at = [&](Vec3d there) {
     point.start = make_grid_point(setup.grid, there);
     return !is_hidden(nodes, setup.section, point, to_viewer);
@@ -92,9 +92,9 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   // along the line of sight, which is free: of voxels everywhere, of a mesh's cells after a few
   // cells.
   const double depth = static_cast<double>(sample.depth);
-  const double cell_depth = cell_size / std::sqrt(dot(direction, direction));
+  const double cell_depth = cell_size / std::sqrt(dot(line.direction, line.direction));
   const auto cells_before = [&](int cells) {
-    return setup.camera.eye + direction * (depth - cells * cell_depth);
+    return line.origin + line.direction * (depth - cells * cell_depth);
   };
   for (int i = 1; i <= StartRule::kTries; ++i)
     if (can_start_at(cells_before(i))) return point;

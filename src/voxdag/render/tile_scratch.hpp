@@ -1,15 +1,23 @@
 #pragma once
 /// The arrays that the stages of a tile share.
+#include <type_traits>
+
 #include "voxdag/render/light_beam.hpp"
 #include "voxdag/render/surface_point.hpp"
 #include "voxdag/render/view_sample.hpp"
 
 namespace voxdag {
 
+/// No arrays for paths.
+struct NoPathScratch {};
+
 /// Arrays for tiles of up to kPixels pixels: many for packets on the CPU, one for a GPU thread.
-/// Every array but `active` is indexed by the tile's pixel, in the order of ViewTile.
-template <int kPixels>
+/// Every array but `active` is indexed by the tile's pixel, in the order of ViewTile. `Paths` is
+/// PathScratch<kPixels> if the light may bounce.
+template <int kPixels, class Paths = NoPathScratch>
 struct TileScratch {
+  static constexpr bool kWithPaths = !std::is_same_v<Paths, NoPathScratch>;
+
   ViewSample samples[kPixels];
   SurfacePoint points[kPixels];
   std::int32_t active[kPixels];  ///< Pixels that cast rays, in order.
@@ -26,6 +34,8 @@ struct TileScratch {
   Vec3f highlights[kPixels];  ///< Radiance of the highlights of all lights, if there are any.
   float lit_sum[kPixels],
       unhindered_sum[kPixels];  ///< Luminance from all lights, and without occluders.
+
+  Paths paths;
 };
 
 }  // namespace voxdag

@@ -1,5 +1,6 @@
 #pragma once
-/// The primary rays of a tile at the voxels of a DAG.
+/// The primary rays of a tile, and what they show of the voxels of a DAG.
+#include "voxdag/render/hatch.hpp"
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/render/stored_look.hpp"
 #include "voxdag/render/surface_normal.hpp"
@@ -34,34 +35,52 @@ VOXDAG_HD inline CastRay primary_ray(const RenderSetup& setup, const ViewTile& t
   return ray;
 }
 
-/// Returns the view sample at which a primary ray hit a cell. `direction` is the ray's direction;
-/// the ray ended at `hit`, at depth `depth`.
+/// Returns the camera's line through a pixel of the tile.
+VOXDAG_HD inline SightLine pixel_line(const RenderSetup& setup, const ViewTile& tile, int pixel) {
+  return {setup.camera.eye, pixel_direction(setup, tile, pixel)};
+}
+
+/// Returns the view sample at which a ray along `line` hit a cell, at `t`. `depth` is the distance
+/// from the camera that decides how smooth the cell looks.
 template <class Nodes>
 VOXDAG_HD inline ViewSample voxel_view_sample(const Nodes& nodes, const RenderSetup& setup,
-                                              Vec3d direction, const Hit& hit, double depth) {
+                                              const SightLine& line, const Hit& hit, double t,
+                                              double depth) {
   const RenderSettings& settings = setup.settings;
   const int shift = setup.grid.levels - hit.level;
   const double cell_size = setup.grid.cell_size(hit.level);
-  const Vec3f view = -static_cast<Vec3f>(normalized(direction));
+  const Vec3f view = -static_cast<Vec3f>(normalized(line.direction));
   const Vec3f face = hit.face == Face::kNone ? view : static_cast<Vec3f>(face_normal(hit.face));
   const float cell_pixels = static_cast<float>(cell_size / (setup.camera.pixel_size() * depth));
   const float cube = smooth_step(settings.cube_pixels / 2, settings.cube_pixels, cell_pixels);
   ViewSample sample;
+  SmoothSurface smooth;
   sample.normal = face;
   const Vec3i at{hit.voxel.x >> shift, hit.voxel.y >> shift, hit.voxel.z >> shift};
   if (cube < 1 && hit.level >= 2) {
-    const Vec3f smooth = surface_normal(nodes, hit.level, at, view, face);
-    sample.normal = normalized(mix(smooth, face, cube));
+    smooth = smooth_surface(nodes, hit.level, at, view, face);
+    sample.normal = normalized(mix(smooth.normal, face, cube));
   }
   sample.face = sample.normal;
   sample.albedo = settings.albedo;
   set_stored_look(setup.look, at, hit.level, view, face, sample);
-  sample.depth = static_cast<float>(depth);
+  sample.depth = static_cast<float>(t);
   sample.cell_size = static_cast<float>(cell_size);
+  const Vec3d entered = line.origin + line.direction * t;
   // The surface's plane meets the cell, so the entered face lies at most this far below the plane.
   const float below = cube_height(sample.face) - dot(sample.face, face);
-  const double lift = below > 0 ? static_cast<double>(below) * cell_size : 0.0;
-  sample.point = setup.camera.eye + direction * depth + static_cast<Vec3d>(sample.face) * lift;
+  double lift = below > 0 ? static_cast<double>(below) : 0.0;
+  // Points on the smooth surface itself have shadows without the steps of the cells.
+  const auto trust = static_cast<double>(smooth.is_flat * (1 - cube));
+  if (trust > 0) {
+    const Vec3d centre =
+        setup.grid.origin + (static_cast<Vec3d>(at) + Vec3d{0.5, 0.5, 0.5}) * cell_size;
+    const double above =
+        dot((entered - centre) * (1 / cell_size), static_cast<Vec3d>(sample.face)) -
+        static_cast<double>(smooth.height);
+    lift = lift * (1 - trust) - above * trust;
+  }
+  sample.point = entered + static_cast<Vec3d>(sample.face) * (lift * cell_size);
   return sample;
 }
 
@@ -75,7 +94,23 @@ VOXDAG_HD inline ViewSample cut_view_sample(const RenderSetup& setup, Vec3d dire
   sample.depth = static_cast<float>(depth);
   sample.cell_size = static_cast<float>(setup.grid.cell_size(level));
   sample.point = setup.camera.eye + direction * depth;
+  const float hatch = setup.settings.hatch_period;
+  if (hatch > 0 &&
+      is_hatched((sample.point - setup.grid.origin) * (1 / setup.side()), normal, hatch))
+    sample.albedo = kCutAlbedo * kHatchShade;
   return sample;
+}
+
+/// Returns the view sample at which a ray along `line` hit a cell. `depth` as above; `ray` is the
+/// line's, in the grid.
+template <class Nodes>
+VOXDAG_HD inline ViewSample view_sample_of(const Nodes& nodes, const RenderSetup& setup,
+                                           const SightLine& line, const GridRay& ray,
+                                           const CellHit& cell, double depth) {
+  static_assert(!EsvoLayout<Nodes>, "see esvo_view_samples.hpp");
+  const Hit hit = to_hit(ray, cell, setup.grid.levels, 0, HUGE_VALF);
+  return voxel_view_sample(nodes, setup, line, hit, ray.to_world_t(static_cast<double>(cell.t)),
+                           depth);
 }
 
 /// Sets scratch.samples for all pixels of the tile. Returns the number of rays.
@@ -83,22 +118,18 @@ template <class Nodes, class Caster, class Scratch>
 VOXDAG_HD inline int trace_view_samples(const Nodes& nodes, const Caster& caster,
                                         const RenderSetup& setup, const ViewTile& tile,
                                         Scratch& scratch) {
-  static_assert(!EsvoLayout<Nodes>, "see esvo_view_samples.hpp");
   caster.closest(
       tile.width * tile.height, [&](int pixel) { return primary_ray(setup, tile, pixel); },
-      [&](int pixel, const GridRay& ray, const CellHit& cell, bool is_hit) {
+      [&](int pixel, const GridRay& ray, const typename FoundBy<Nodes>::Type& cell, bool is_hit) {
         ViewSample& sample = scratch.samples[pixel];
         sample = ViewSample{};
         if (!is_hit) return;
-        const Hit hit = to_hit(ray, cell, setup.grid.levels, 0, HUGE_VALF);
         const double depth = ray.to_world_t(static_cast<double>(cell.t));
-        const Vec3d direction = pixel_direction(setup, tile, pixel);
+        const SightLine line = pixel_line(setup, tile, pixel);
         const Vec3f cut = cell.t == ray.t_min ? cut_normal(setup.section, ray) : Vec3f{};
-        if (dot(cut, cut) > 0) {
-          sample = cut_view_sample(setup, direction, cell.level, depth, cut);
-          return;
-        }
-        sample = voxel_view_sample(nodes, setup, direction, hit, depth);
+        sample = dot(cut, cut) > 0 ? cut_view_sample(setup, line.direction, cell.level, depth, cut)
+                                   : view_sample_of(nodes, setup, line, ray, cell, depth);
+        sample.cell = {to_hit(ray, cell, setup.grid.levels, 0, HUGE_VALF).voxel, cell.level};
       });
   return tile.width * tile.height;
 }

@@ -20,8 +20,10 @@ TEST(PicturePass, EveryKindHasAChannelForEachOfItsValues) {
   RenderedImage image;
   image.width = 2;
   image.height = 1;
-  image.rgb = image.radiance = image.normal = {{1, 0, 0}, {0, 1, 0}};
+  image.rgb = image.radiance = image.normal = image.albedo = {{1, 0, 0}, {0, 1, 0}};
   image.depth = image.occlusion = image.shadow = image.steps = {1, 0.5f};
+  image.cells = {{}, {{4, 5, 6}, 3}};
+  image.material = {-1, 7};
   for (const PictureKind& kind : picture_kinds()) {
     const ImageF values = kind.values(image);
     EXPECT_EQ(values.pixels.size(), 2 * kind.channels.size()) << kind.name;

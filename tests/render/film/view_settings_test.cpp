@@ -93,6 +93,34 @@ TEST_F(Settings, SettingsThatAPictureCannotShowAreNamed) {
   EXPECT_EQ(ignored(R"({"sun": {"size": 1}})"), "\"sun.size\" is ignored: the key is unknown");
 }
 
+TEST_F(Settings, APageHasATitleAndALicence) {
+  const ViewSettings settings = read(R"({"title": "Castle", "licence": "CC BY 4.0", "unit": "m",
+    "measures": [{"kind": "area", "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}],
+    "annotations": [{"text": "a", "point": [0, 0, 0], "camera": {"eye": [0, 0, 1], "target": [0, 0, 0]}}],
+    "path": [{"time": 0, "eye": [0, 0, 1], "target": [0, 0, 0]}]})");
+  EXPECT_EQ(settings.title, "Castle");
+  EXPECT_EQ(settings.licence, "CC BY 4.0");
+  EXPECT_TRUE(settings.ignored.empty() && settings.unknown.empty());
+  EXPECT_EQ(read(R"({"fog": 1, "sun": {"size": 1}})").unknown,
+            (std::vector<std::string>{"fog", "sun.size"}));
+}
+
+TEST_F(Settings, ErrorsInListsNameTheElement) {
+  EXPECT_EQ(error(R"({"title": 1})"), "\"title\" is not a text");
+  EXPECT_EQ(error(R"({"mode": "swim"})"), "\"mode\" is none of orbit, fly, walk");
+  EXPECT_EQ(error(R"({"unit": "km"})"), "\"unit\" is none of m, cm, mm, in, ft");
+  EXPECT_EQ(error(R"({"measures": {}})"), "\"measures\" is not an array");
+  EXPECT_EQ(error(R"({"measures": [{"from": [0, 0, 0]}]})"), "\"measures[0].to\" is missing");
+  EXPECT_EQ(error(R"({"measures": [{"kind": "area", "points": [[0, 0, 0]]}]})"),
+            "\"measures[0].points\" has less than 2 points");
+  EXPECT_EQ(error(R"({"measures": [{"points": [[0, 0, 0], [0, 1]]}]})"),
+            "\"measures[0].points[1]\" is not an array of three numbers");
+  EXPECT_EQ(error(R"({"annotations": [{"text": "a", "point": [0, 0, 0]}]})"),
+            "\"annotations[0].camera\" is missing");
+  EXPECT_EQ(error(R"({"path": [{"eye": [0, 0, 1], "target": [0, 0, 0]}]})"),
+            "\"path[0].time\" is missing");
+}
+
 TEST_F(Settings, ErrorsNameTheKey) {
   EXPECT_EQ(error("[]"), "must be an object");
   EXPECT_EQ(error(R"({"version": 2})"), "\"version\" is 2; this program reads version 1");

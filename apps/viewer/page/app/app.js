@@ -1,4 +1,5 @@
 /** The page's program: a viewer of the scene beside the page, with hands and interface. */
+import { bakedSettings } from '../baked_settings.js';
 import { Hands } from '../hands/hands.js';
 import { settingsFromHash } from '../settings_link.js';
 import { createInterface } from '../ui/interface.js';
@@ -10,11 +11,12 @@ const container = /** @type {HTMLElement} */ (document.getElementById('container
 const picture = /** @type {HTMLElement} */ (document.getElementById('picture'));
 
 try {
-  const { settings, problems } = settingsFromHash(location.hash);
+  const { base, problem } = bakedSettings(), { settings, problems } = settingsFromHash(location.hash, base);
+  if (problem) problems.unshift(problem);
   const viewer = createViewer({ container: picture, settings });
   const hands = new Hands(viewer);
-  const ui = createInterface(viewer, hands, container);
-  keepLink(ui);
+  const ui = createInterface(viewer, hands, container, base);
+  keepLink(ui, base);
   for (const problem of problems) console.warn(problem);
   if (problems.length) ui.toast(capitalized(problems[0]), true);
   // For tests and for the console.

@@ -8,7 +8,7 @@ import { loadText } from './text_assets.js';
 /** Codes of instances are this many times the binary logarithm of the number. */
 export const INSTANCE_STEPS = 4;
 
-const PARTS = ['source', 'container', 'levels', 'attributes', 'wire', 'worker'];
+const PARTS = ['source', 'blob_source', 'container', 'levels', 'attributes', 'wire', 'worker'];
 
 /**
  * Contents of a file. `levelBegin` are the first words of the levels in NODE.
@@ -16,7 +16,7 @@ const PARTS = ['source', 'container', 'levels', 'attributes', 'wire', 'worker'];
  *   levels: number, resolution: number, origin: [number, number, number], voxelSize: number, voxels: number,
  *   dagNodesPerLevel: number[], fileBytes: number, isEmpty: boolean,
  *   words: number, leafBlocks: number, levelBegin: number[], hasColors: boolean, hasNormals: boolean, materials: string[] | null,
- *   up: 'x' | 'y' | 'z' | null, home: (import('../settings.js').Camera & {sun?: [number, number, number]}) | null, cubes: boolean,
+ *   up: 'x' | 'y' | 'z' | null, unit: import('../settings.js').Unit | null, home: (import('../settings.js').Camera & {sun?: [number, number, number]}) | null, cubes: boolean,
  *   source: {name: string, vertices: number, triangles: number}}} FileInfo
  */
 /** @typedef {{precision: number, begins: Uint32Array, words: Uint32Array}} ValuePages */
@@ -24,7 +24,7 @@ const PARTS = ['source', 'container', 'levels', 'attributes', 'wire', 'worker'];
  *   materials: {materials: number, begins: Uint32Array, words: Uint32Array} | null}} Attributes */
 /**
  * The messages of the worker.
- * @typedef {{type: 'info', info: FileInfo, bytes: number}
+ * @typedef {{type: 'info', info: FileInfo, settings: string | null, bytes: number}
  *   | {type: 'progress', bytes: number}
  *   | {type: 'level', level: number, shown: number, words: Uint32Array, codes: Uint8Array | null, mostInstances: number}
  *   | {type: 'leaves', shown: number, halves: Uint32Array, codes: Uint8Array | null, mostInstances: number}
@@ -43,7 +43,7 @@ export class SceneLoader {
     this.closed = false;
   }
 
-  /** Opens a file: at an address, or its bytes. @param {{url?: string, bytes?: ArrayBuffer}} from */
+  /** Opens a file: at an address, its bytes, or on this computer. @param {{url?: string, bytes?: ArrayBuffer, file?: Blob}} from */
   async open(from) {
     const texts = await Promise.all(PARTS.map((name) => loadText(`file/worker/${name}.js`)));
     if (this.closed) return;
@@ -53,7 +53,8 @@ export class SceneLoader {
     URL.revokeObjectURL(url);
     this.worker.onmessage = (event) => this.onMessage(event.data);
     this.worker.onerror = (event) => this.onMessage({ type: 'error', title: 'The scene cannot be loaded', text: event.message || 'Its loader failed.' });
-    if (from.bytes !== undefined) this.worker.postMessage({ type: 'open', bytes: from.bytes }, [from.bytes]);
+    if (from.file !== undefined) this.worker.postMessage({ type: 'open', file: from.file });
+    else if (from.bytes !== undefined) this.worker.postMessage({ type: 'open', bytes: from.bytes }, [from.bytes]);
     else this.worker.postMessage({ type: 'open', url: new URL(from.url ?? '', document.baseURI).href });
   }
 

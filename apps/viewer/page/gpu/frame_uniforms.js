@@ -4,7 +4,7 @@
  */
 import { LIGHT } from '../constants.js';
 import { lensOf } from '../lens.js';
-import { dot, length, normalized, scale, sub } from '../math.js';
+import { distance, dot, length, normalized, scale, sub } from '../math.js';
 import { interiorSun, sunDirection } from '../sun.js';
 
 /** @typedef {import('../settings.js').Camera} Camera */
@@ -46,6 +46,12 @@ export function lightUniforms(place, settings) {
     u_occlusion_distance: occlusion.distance > 0 ? occlusion.distance / place.side : inside ? LIGHT.interiorOcclusion : LIGHT.occlusionDistance,
     u_occlusion_cone: Math.sqrt(occlusion.cone),
   };
+}
+
+/** Returns the period of the lines on cut faces, in grid sides: hatch_period() of render/hatch.hpp. @param {Place} place @param {Settings} settings */
+export function hatchPeriod(place, { camera, section }) {
+  const height = 2 * lensOf(camera, 1).tanY * distance(camera.eye, camera.target) / place.side;
+  return section.hatch ? 2 ** Math.round(Math.log2(height / LIGHT.hatchPeriods)) : 0;
 }
 
 /** Returns the part of the grid that the section keeps. @param {Place} place @param {Settings['section']} section */

@@ -9,7 +9,7 @@ import { distance } from '../math.js';
 import { BACKGROUNDS, SHOWS, TONES } from '../settings.js';
 import { shownRange } from './color_scale.js';
 import { automaticExposure } from './exposure.js';
-import { cameraUniforms, groundUniforms, lightUniforms, sectionUniforms } from './frame_uniforms.js';
+import { cameraUniforms, groundUniforms, hatchPeriod, lightUniforms, sectionUniforms } from './frame_uniforms.js';
 import { Program, drawAll, makeTarget, makeTexture } from './gl_tools.js';
 import { texelBits } from './long_texture.js';
 import { SMOOTH_RADIUS } from './smoother.js';
@@ -157,7 +157,7 @@ export class Renderer {
     const sample = this.program('sample', look, hidden);
     sample.use();
     this.setCast(sample, shot, picture);
-    sample.floats({ u_cube_pixels: settings.cubes });
+    sample.floats({ u_cube_pixels: settings.cubes, u_hatch_period: hatchPeriod(shot.place, settings) });
     sample.floats(groundUniforms(shot.place, settings));
     sample.ints({ u_coarser_fits: shot.quick ? 0 : NORMAL.coarser });
     const sharing = scene.nodeInstances === null ? {} : { u_node_instances: scene.nodeInstances.texture, u_leaf_instances: /** @type {any} */ (scene.leafInstances).texture };

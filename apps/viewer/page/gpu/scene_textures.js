@@ -106,8 +106,13 @@ export class SceneTextures {
   /** @type {LongTexture | null} */
   hidden = null;
 
+  #all() {
+    return [this.hidden, this.look?.materials?.words ?? null, this.look?.materials?.pages ?? null, this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
+  }
   bytes() {
-    const all = [this.hidden, this.look?.materials?.words ?? null, this.look?.materials?.pages ?? null, this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
-    return all.reduce((sum, texture) => sum + (texture?.bytes ?? 0), 0);
+    return this.#all().reduce((sum, texture) => sum + (texture?.bytes ?? 0), 0);
+  }
+  delete() {
+    for (const texture of this.#all()) if (texture) this.gl.deleteTexture(texture.texture);
   }
 }

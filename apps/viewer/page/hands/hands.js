@@ -48,11 +48,13 @@ export class Hands extends Events {
     this.onSettings = (/** @type {Settings} */ settings, /** @type {string} */ by) => by === 'hands' || this.#follow(settings);
     viewer.on('settings', this.onSettings);
     viewer.on('loaded', this.onLoaded);
-    for (const event of ['info', 'level', 'loaded']) viewer.on(event, this.onInfo);
+    viewer.on('opened', this.onOpened);
+    for (const event of ['info', 'level', 'loaded', 'resize']) viewer.on(event, this.onInfo);
     this.#meet();
   }
   isLoaded = false;
   onLoaded = () => { this.isLoaded = true; };
+  onOpened = () => { this.isLoaded = false; };
   /** Takes a double click for something else; returns whether it did. @type {(x: number, y: number) => boolean} */
   takesDoubleClick = () => false;
   /** @type {ReturnType<typeof listeners>} */
@@ -66,7 +68,7 @@ export class Hands extends Events {
     this.navigator = new Navigator({
       get bounds() { return (viewer.info ?? info).bounds; },
       get home() { return (viewer.info ?? info).view; },
-      voxelSize: info.voxelSize,
+      get voxelSize() { return (viewer.info ?? info).voxelSize; },
       cast: (origin, direction, distance) => viewer.castNow(origin, direction, distance),
     });
     this.navigator.reducedMotion = this.reducedMotion;
@@ -209,8 +211,9 @@ export class Hands extends Events {
   destroy() {
     this.#listeners.end();
     cancelAnimationFrame(this.frameRequest);
-    for (const event of ['info', 'level', 'loaded']) this.viewer.off(event, this.onInfo);
+    for (const event of ['info', 'level', 'loaded', 'resize']) this.viewer.off(event, this.onInfo);
     this.viewer.off('settings', this.onSettings);
     this.viewer.off('loaded', this.onLoaded);
+    this.viewer.off('opened', this.onOpened);
   }
 }

@@ -7,8 +7,9 @@ const HELP = [
   ['Mouse and touch', [
     ['Drag · one finger', 'turn; look around when flying or walking'],
     ['Right drag · Shift drag · two fingers', 'move sideways'],
-    ['Wheel · pinch', 'zoom to the pointer; speed when flying'],
+    ['Wheel · pinch', 'zoom to the pointer; change the speed when flying'],
     ['Three fingers', 'fly'],
+    ['Long press on an icon', 'its name'],
     ['Double click', 'turn around that point'],
   ]],
   ['Move', [
@@ -21,8 +22,8 @@ const HELP = [
     ['L', 'look around without a button; Escape ends it'],
   ]],
   ['Views', [
-    ['F', 'frame the whole scene'],
-    ['R', 'reset the view'],
+    ['F', 'show the whole scene'],
+    ['R', 'go back to the home view'],
     ['1 … 7', 'home, front, right, back, left, top, bottom'],
     ['O V G', 'orbit, fly, walk'],
   ]],
@@ -35,6 +36,8 @@ const HELP = [
     ['P', 'save a picture'],
     ['I', 'statistics'],
     ['H', 'this help'],
+    ['Shift', 'keep a measure to an axis'],
+    ['Enter', 'end a path, close an area'],
     ['Escape', 'end a tool, close a panel'],
   ]],
 ];
@@ -43,7 +46,7 @@ export function helpPanel() {
   return {
     element: h('div', { class: 'help' }, ...HELP.map(([title, rows]) =>
       group(title, h('dl', {}, ...rows.map(([keys, act]) =>
-        h('div', {}, h('dt', {}, ...(/^(.|Shift|Space|Escape|Arrows|[A-Z](?: [A-Z])+|\+ −|1 … 7)$/.test(keys)
+        h('div', {}, h('dt', {}, ...(/^(.|Shift|Space|Enter|Escape|Arrows|[A-Z](?: [A-Z])+|\+ −|1 … 7)$/.test(keys)
           ? (/^[A-Z+](?: .)+$/.test(keys) ? keys.split(' ') : [keys]).map((key) => h('kbd', {}, key)) : [keys])), h('dd', {}, act)))))),
     h('p', { class: 'hint' }, 'A gamepad works too: sticks move and turn, triggers zoom, Y frames, X changes the mode, B goes home.')),
     refresh() {},

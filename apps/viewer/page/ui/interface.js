@@ -5,17 +5,19 @@ import { isTyping, movingKey } from '../hands/keys.js';
 import { comparePanel } from './compare_panel.js';
 import { button, segments } from './controls.js';
 import { copy, h } from './dom.js';
-import { acceptFiles } from './file_drop.js';
+import { acceptFiles, openFile } from './open_file.js';
 import { filmPanel } from './film_panel.js';
 import { helpPanel } from './help_panel.js';
 import { icon } from './icons.js';
 import { makeJobs } from './job.js';
 import { lightPanel } from './light_panel.js';
+import { nameOnLongPress } from './long_press.js';
 import { materialsPanel } from './materials_panel.js';
 import { measurePanel } from './measure_panel.js';
 import { notesPanel } from './notes_panel.js';
 import { Overlay } from './overlay.js';
 import { Readout } from './readout.js';
+import { scaleBar } from './scale_bar.js';
 import { sectionPanel } from './section_panel.js';
 import { sharePanel } from './share_panel.js';
 import { statisticsPanel } from './statistics_panel.js';
@@ -39,6 +41,7 @@ import { SIDES, viewPanel } from './view_panel.js';
  * @property {() => string} hint
  * @property {(hit: Hit) => void} click
  * @property {(hit: Hit | null) => void} [hover]
+ * @property {() => boolean} [finish]  Enter ends a part of its work; returns whether there was one.
  * @property {() => void} [end]
  *
  * @typedef {object} Ui  Parts of the interface that panels may use.
@@ -70,9 +73,9 @@ const NUMBERS_MS = 250;
 
 /**
  * Adds the interface to a container, in which an element holds only the viewer's canvas.
- * @param {Viewer} viewer @param {Hands} hands @param {HTMLElement} container @returns {Ui}
+ * @param {Viewer} viewer @param {Hands} hands @param {HTMLElement} container @param {Settings} [base]  What the page begins with. @returns {Ui}
  */
-export function createInterface(viewer, hands, container) {
+export function createInterface(viewer, hands, container, base = DEFAULTS) {
   const status = new Status(viewer, container);
   const { canvas } = viewer;
   const overlay = new Overlay(viewer, canvas.parentElement ?? container);
@@ -106,8 +109,8 @@ export function createInterface(viewer, hands, container) {
     refresh: () => refresh(),
     reset() {
       endTool();
-      const { annotations, measures, path } = viewer.get();
-      viewer.set({ ...structuredClone(DEFAULTS), annotations, measures, path }, 'ui');
+      const { annotations, measures, path, title, licence } = viewer.get();
+      viewer.set({ ...structuredClone(DEFAULTS), annotations, measures, path, title, licence }, 'ui');
       ui.toast('Settings reset; measures, notes and the camera path stay');
     },
     home: () => viewer.info?.view ?? viewer.camera(),
@@ -117,7 +120,7 @@ export function createInterface(viewer, hands, container) {
       return h('div', { class: 'command' }, h('code', { tabindex: 0 }, line),
         button('Copy this command', act, { icon: 'copy', bare: true }));
     },
-    hash: () => settingsToHash(viewer.get(), viewer.info?.view ?? null),
+    hash: () => settingsToHash(viewer.get(), viewer.info?.view ?? null, base),
     tool: (made) => ({
       get active() { return tool === made; },
       toggle() {
@@ -136,6 +139,7 @@ export function createInterface(viewer, hands, container) {
     view: viewPanel(ui), light: lightPanel(ui), section, measure, notes, film, compare, materials: materialsPanel(ui), share, statistics: statisticsPanel(ui), help: helpPanel(),
   };
   const readout = new Readout(ui, container);
+  scaleBar(ui, canvas.parentElement ?? container, () => opened === 'measure' || viewer.get().measures.length > 0);
 
   // Toolbar and panel.
   const title = h('h2', { id: 'panel-title' });
@@ -148,7 +152,7 @@ export function createInterface(viewer, hands, container) {
     const opener = h('button', {
       type: 'button', title: key ? `${label} (${key})` : label, 'aria-label': label, 'aria-expanded': 'false', 'aria-controls': 'panel',
       on: { click: () => toggle(name) },
-    }, icon(name));
+    }, icon(name), h('span', { class: 'wide-label' }, label));
     openers.set(name, opener);
     return opener;
   }));
@@ -159,6 +163,7 @@ export function createInterface(viewer, hands, container) {
     for (const [other, opener] of openers) opener.setAttribute('aria-expanded', String(other === opened));
     panel.hidden = opened === '';
     container.classList.toggle('has-panel', opened !== '');
+    overlay.redraw();
     if (opened === '') return body.replaceChildren();
     title.textContent = PANELS.find(([other]) => other === opened)?.[1] ?? '';
     body.replaceChildren(panels[opened].element);
@@ -171,9 +176,10 @@ export function createInterface(viewer, hands, container) {
     get: (s) => s.mode, set: (mode) => viewer.set({ mode }, 'ui'),
   });
   const bar = h('div', { class: 'modes' }, modes.element,
-    button('Home (R)', () => home(), { icon: 'home', bare: true }),
-    button('Frame (F)', () => hands.frame(), { icon: 'frame', bare: true }));
+    button('Home (R)', () => home(), { icon: 'home', bare: true, wide: true }),
+    button('Frame (F)', () => hands.frame(), { icon: 'frame', bare: true, wide: true }));
   container.append(bar, toolbar, panel);
+  nameOnLongPress(container, (name) => ui.toast(name));
 
   const home = () => {
     if (viewer.get().mode !== 'orbit') viewer.set({ mode: 'orbit' }, 'ui');
@@ -228,6 +234,7 @@ export function createInterface(viewer, hands, container) {
       }
       return;
     }
+    if (event.key === 'Enter' && tool?.finish && !isTyping(event) && tool.finish()) return showTool();
     // Digits by their place: some keyboards want Shift for them.
     const key = /^(?:Digit|Numpad)([1-9])$/.exec(event.code)?.[1] ?? event.key.toLowerCase();
     const act = shortcuts[key];
@@ -237,7 +244,7 @@ export function createInterface(viewer, hands, container) {
   };
   window.addEventListener('keydown', onKey);
 
-  acceptFiles(container, (file) => share.load(file));
+  acceptFiles(container, (file) => openFile(ui, file));
 
   // Events of the viewer.
   viewer.on('settings', (settings, by) => {

@@ -36,42 +36,42 @@ export function lightPanel(ui) {
   const dome = sunDome({ angles, heading, aim });
   const on = toggle({ label: 'Sun', get: (s) => s.sun.on, set: (value) => set({ sun: { on: value } }) });
   const follow = toggle({
-    label: 'Over my left shoulder', hint: 'The sun turns with the camera; inside a building, it shines through an opening',
+    label: 'Sun follows the camera', hint: 'The light comes from behind you, from the left; inside a building, through an opening',
     get: (s) => s.sun.direction === null,
     set: (value) => (value ? set({ sun: { direction: null } }) : aim(angles().azimuth, angles().elevation)),
   });
   const azimuth = slider({
-    label: 'Azimuth', min: 0, max: 360, step: 1, text: degrees,
+    label: 'Direction of the sun', min: 0, max: 360, step: 1, text: degrees,
     get: () => angles().azimuth, set: (value) => aim(value, angles().elevation),
   });
   const elevation = slider({
-    label: 'Elevation', min: -10, max: 90, step: 1, text: degrees,
+    label: 'Height of the sun', min: -10, max: 90, step: 1, text: degrees,
     // Straight up, the azimuth would be lost.
     get: () => angles().elevation, set: (value) => aim(angles().azimuth, Math.min(value, 89.9)),
   });
   const angle = slider({
-    label: 'Size of the sun', hint: 'Its diameter; 0: hard shadows', min: 0, max: 10,
+    label: 'Diameter of the sun', hint: 'The larger, the softer the shadows; 0: hard shadows', min: 0, max: 10,
     to: (x) => Math.sqrt(x * 10), from: (x) => +(x * x / 10).toFixed(2), text: (x) => `${+x.toFixed(2)}°`,
     get: (s) => s.sun.angle, set: (value) => set({ sun: { angle: value } }),
   });
   const shadows = toggle({ label: 'Shadows', get: (s) => s.shadows, set: (value) => set({ shadows: value }) });
   const sky = slider({
-    label: 'Sky', min: 0, max: 3, step: 0.05, text: (x) => `× ${+x.toFixed(2)}`,
+    label: 'Brightness of the sky', min: 0, max: 3, step: 0.05, text: (x) => `× ${+x.toFixed(2)}`,
     get: (s) => s.sky, set: (value) => set({ sky: value }),
   });
   const samples = slider({
-    label: 'Ambient occlusion', min: 0, max: 256, step: 8, text: (x) => (x ? `${x} rays` : 'off'),
+    label: 'Ambient occlusion: quality', min: 0, max: 256, step: 8, whole: true, text: (x) => (x ? `${x} rays` : 'off'),
     get: (s) => s.occlusion.samples, set: (value) => set({ occlusion: { samples: value } }),
   });
   const reach = slider({
-    label: 'Its distance', hint: 'How far surfaces darken each other, in parts of the grid', min: 0.005, max: 1,
-    text: (x) => `${(x * 100).toPrecision(2)}%`,
+    label: 'Ambient occlusion: distance', hint: 'How far surfaces darken each other, in parts of the grid', min: 0.005, max: 1, per: 100,
+    text: (x) => `${+(x * 100).toPrecision(3)}%`,
     get: (s) => s.occlusion.distance / side() || (inside() ? LIGHT.interiorOcclusion : LIGHT.occlusionDistance),
     set: (value) => set({ occlusion: { distance: +(value * side()).toPrecision(3) } }),
   });
   const exposure = slider({
     label: 'Exposure', min: -4.25, max: 4, step: 0.05, ...logarithmic(2 ** -4.25),
-    text: (x) => (x ? `× ${x.toPrecision(2)}` : 'automatic'),
+    text: (x) => (x ? `× ${+x.toPrecision(3)}` : 'automatic'),
     get: (s) => s.exposure, set: (value) => set({ exposure: value }),
   });
   const tone = choice({

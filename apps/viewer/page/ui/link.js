@@ -6,12 +6,13 @@ import { settingsFromHash } from '../settings_link.js';
 /** Milliseconds without a change before the address follows: browsers limit such changes. */
 const PAUSE_MS = 400;
 
-/** Writes changes into the address, and reads links that are pasted there. @param {Ui} ui */
-export function keepLink(ui) {
+/** Writes changes into the address, and reads links that are pasted there. @param {Ui} ui @param {import('../settings.js').Settings} base  What a link without keys shows. */
+export function keepLink(ui, base) {
   const { viewer } = ui;
   let timer = 0, written = location.hash.replace(/^#/, '');
   const write = () => {
     if (ui.hands.moved) return later();  // the camera still moves: frames are slow
+    if (viewer.file !== null) return;  // the address leads to another scene
     const hash = ui.hash();
     if (hash === written) return;
     written = hash;
@@ -30,7 +31,7 @@ export function keepLink(ui) {
     const hash = location.hash.replace(/^#/, '');
     if (hash === written) return;
     written = hash;
-    const { settings, problems } = settingsFromHash(hash);
+    const { settings, problems } = settingsFromHash(hash, base);
     viewer.set(settings, 'link');
     if (problems.length) ui.toast(capitalized(problems[0]), true);
   });

@@ -1,111 +1,138 @@
-/** The panel "Measure": distances between points that one picks, drawn in the picture. */
-import { distance, roundTo3, stepBelow } from '../math.js';
-import { button, group } from './controls.js';
-import { h, say, svg, update } from './dom.js';
+/** The panel "Measure": lengths, areas, angles and heights between points that one picks, drawn in the picture. */
+import { distance, normalized, roundTo3, stepBelow } from '../math.js';
+import { alongAxis, pathLength, unitFactor, valueOf } from '../measures.js';
+import { MEASURE_POINTS, UNITS } from '../settings.js';
+import { button, choice, group } from './controls.js';
+import { h } from './dom.js';
+import { drawMeasures } from './measure_drawing.js';
 import { lengthText } from './numbers.js';
-import { pathOf, place, show } from './overlay.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui
  * @typedef {import('../math.js').Vec3} Vec3
  * @typedef {import('../settings.js').Settings} Settings
  * @typedef {import('../settings.js').Measure} Measure
+ * @typedef {import('../settings.js').MeasureKind} MeasureKind
+ * @typedef {import('../settings.js').Unit} Unit
  */
 
-/** Returns the lengths along x, y and z. @param {Measure} measure */
-const componentsOf = ({ from, to }) => to.map((x, i) => Math.abs(x - from[i]));
-
-/** Makes the drawing of a measure: its line, ends, components and label. */
-function drawnMeasure() {
-  const line = svg('path', { class: 'measure-line' }), halo = svg('path', { class: 'halo' });
-  const steps = ['x', 'y', 'z'].map((axis) => svg('path', { class: `measure-step axis-${axis}` }));
-  const ends = [0, 1].map(() => svg('circle', { class: 'measure-end', r: 4 }));
-  const label = svg('text', { class: 'label', 'text-anchor': 'middle', dy: -8 });
-  return { element: svg('g', { class: 'measure' }, ...steps, halo, line, ...ends, label), line, halo, steps, ends, label };
-}
+/** @type {[MeasureKind, string][]} */
+const KINDS = [['distance', 'Distance'], ['path', 'Path'], ['area', 'Area'], ['angle', 'Angle'], ['height', 'Height']];
+/** @type {{[kind in MeasureKind]: string[]}} Hints for the first points; the last one for all others. */
+const HINTS = {
+  distance: ['Click the first point', 'Click the second point. Shift keeps to an axis'],
+  path: ['Click the first point', 'Click the next point. Enter or a double click ends the path'],
+  area: ['Click the first corner', 'Click the next corner. Enter or a double click closes the area'],
+  angle: ['Click a point of the first side', 'Click the corner of the angle', 'Click a point of the second side'],
+  height: ['Click the lower point', 'Click the upper point'],
+};
 
 /** @param {Ui} ui */
 export function measurePanel(ui) {
   const { viewer, overlay } = ui;
-  const voxel = () => viewer.info?.voxelSize ?? 1;
-  const text = (/** @type {number} */ x) => lengthText(x, voxel() * 0.1);
+  const voxel = () => viewer.info?.voxelSize ?? 1, own = () => viewer.info?.unit ?? null, unit = () => viewer.get().unit ?? own();
+  const up = () => normalized(viewer.camera().up);
   const rounded = (/** @type {Vec3} */ point) => roundTo3(point, stepBelow(voxel(), 0.001));
-  /** The first point, while the second one is wanted, and where the pointer is. @type {{from: Vec3, to: Vec3} | null} */
-  let open = null;
+  /** Returns a length of the scene as text. @param {number} x */
+  const lengthOf = (x) => lengthText(x * unitFactor(own(), unit()), voxel() * 0.1 * unitFactor(own(), unit()));
+  /** Returns the value with its unit. @param {Measure} measure */
+  const text = (measure) => {
+    const value = valueOf(measure, up()), name = own() ? ' ' + unit() : '';
+    if (measure.points.length < MEASURE_POINTS[measure.kind][0]) return '';
+    if (measure.kind === 'angle') return `${value.toFixed(1)}°`;
+    if (measure.kind !== 'area') return lengthOf(value) + name;
+    const square = unitFactor(own(), unit()) ** 2;
+    return lengthText(value * square, Math.max(voxel() * 0.1 * Math.sqrt(value), voxel() ** 2 * 0.01) * square) + (name && name + '²');
+  };
+
+  /** The kind that the tool makes. @type {MeasureKind} */
+  let kind = 'distance';
+  /** The points that are picked, while more are wanted, and where the pointer is. @type {Vec3[]} */
+  let open = [];
+  /** @type {Vec3 | null} */
+  let pointer = null;
+  let isShift = false;
   /** The measure whose components are drawn. */
   let chosen = 0;
-  /** @type {ReturnType<typeof drawnMeasure>[]} */
-  const drawn = [];
-  const layer = svg('g', {});
+  for (const type of ['keydown', 'keyup', 'pointerdown', 'pointermove'])
+    window.addEventListener(type, (event) => { isShift = /** @type {KeyboardEvent | PointerEvent} */ (event).shiftKey; }, { capture: true });
+  const placed = (/** @type {Vec3} */ point) => rounded(isShift && open.length > 0 ? alongAxis(open[open.length - 1], point) : point);
 
-  overlay.add((projection, { measures }) => {
-    const all = open ? [...measures, open] : measures;
-    while (drawn.length < all.length) layer.append(drawn[drawn.push(drawnMeasure()) - 1].element);
-    drawn.forEach((shape, i) => {
-      const measure = all[i];
-      show(shape.element, measure !== undefined);
-      if (!measure) return;
-      const { from, to } = measure, path = pathOf(projection.clipped([from, to], false));
-      update(shape.line, { d: path });
-      update(shape.halo, { d: path });
-      /** @type {Vec3[]} */
-      const corners = [from, [to[0], from[1], from[2]], [to[0], to[1], from[2]], to];
-      const isChosen = i === chosen || measure === open;
-      shape.steps.forEach((step, axis) =>
-        update(step, { d: isChosen ? pathOf(projection.clipped(corners.slice(axis, axis + 2), false)) : '' }));
-      const [a, b] = [from, to].map((point) => projection.at(point));
-      place(shape.ends[0], a);
-      place(shape.ends[1], b);
-      place(shape.label, a && b && { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 });
-      say(shape.label, text(distance(from, to)));
-      show(shape.label, a !== null && b !== null && !(measure === open && from === to));
-    });
-  }, layer);
+  drawMeasures(ui, text, () => {
+    const { measures } = viewer.get(), begun = pointer && open.length > 0 ? [...open, pointer] : open;
+    return begun.length > 0 ? { measures: [...measures, { kind: begun.length < 2 ? 'path' : kind, points: begun }], chosen: measures.length } : { measures, chosen };
+  });
 
+  const finish = () => {
+    const { measures } = viewer.get(), [least] = MEASURE_POINTS[kind];
+    if (open.length < least) return false;
+    const made = { kind, points: open };
+    open = [];
+    pointer = null;
+    chosen = measures.length;
+    viewer.set({ measures: [...measures, made] }, 'ui');
+    ui.announce(`${KINDS.find(([name]) => name === kind)?.[1]} ${text(made)}`);
+    return true;
+  };
   const tool = ui.tool({
-    hint: () => (open ? 'Click the second point' : 'Click the first point'),
+    hint: () => HINTS[kind][Math.min(open.length, HINTS[kind].length - 1)],
     click(hit) {
-      const point = rounded(hit.position);
-      if (!open) open = { from: point, to: point };
-      else {
-        const { measures } = viewer.get(), done = { from: open.from, to: point };
-        open = null;
-        chosen = measures.length;
-        viewer.set({ measures: [...measures, done] }, 'ui');
-        ui.announce(`Distance ${text(distance(done.from, done.to))}`);
-      }
+      const point = placed(hit.position), [, most] = MEASURE_POINTS[kind], last = open[open.length - 1];
+      pointer = null;
+      // The second click of a double click picks the last point again.
+      if (last && distance(last, point) < voxel() * 0.01) finish();
+      else if (open.push(point) === most) finish();
       overlay.redraw();
     },
     hover(hit) {
-      if (!open || !hit) return;
-      open.to = hit.position;
+      if (open.length === 0 || !hit) return;
+      pointer = placed(hit.position);
       overlay.redraw();
     },
+    finish,
     end() {
-      open = null;
+      open = [];
+      pointer = null;
       overlay.redraw();
     },
   });
 
-  const start = button('Measure a distance', () => tool.toggle(),
-    { icon: 'measure', primary: true, title: 'Click two points (key M)', keys: 'M' });
+  const kinds = choice({ label: 'Kind', options: KINDS, get: () => kind, set(value) { kind = value; tool.stop(); tool.toggle(); } });
+  const units = choice({
+    label: 'Unit', options: UNITS.map((name) => /** @type {[Unit, string]} */ ([name, name])),
+    get: () => unit() ?? 'm', set: (value) => viewer.set({ unit: value === own() ? null : value }, 'ui'),
+  });
+  const noUnit = h('p', { class: 'hint' }, 'The file does not say its unit: lengths are in units of the scene. ', h('code', {}, 'voxdag build --unit'), ' stores one.');
+  const start = button('Measure', () => { if (!finish()) tool.toggle(); },
+    { icon: 'measure', primary: true, title: 'Click points of the scene (key M)', keys: 'M' });
   const list = h('ul', { class: 'list' });
+  /** The numbers beside a value. @param {Measure} measure @returns {[string, string][]} */
+  const partsOf = ({ kind: of, points }) => {
+    if (of === 'distance') return points[1].map((x, i) => [`axis-${'xyz'[i]}`, `${'xyz'[i]} ${lengthOf(Math.abs(x - points[0][i]))}`]);
+    if (of === 'area') return [['', `perimeter ${lengthOf(pathLength(points, true))}`]];
+    return of === 'path' ? [['', `${points.length} points`]] : [];
+  };
   let shown = '';
   return {
-    element: h('div', {}, group('', start), list,
-      h('p', { class: 'hint' }, 'Lengths are in units of the scene. The dashed lines are the components along x, y and z.')),
-    refresh(/** @type {Settings} */ { measures }) {
+    element: h('div', {}, group('', kinds.element, start, units.element, noUnit), list,
+      h('p', { class: 'hint' }, 'Hold Shift to keep to an axis. Dashed lines are the components along x, y and z. Measures of parts that a section cuts away are pale.')),
+    refresh(/** @type {Settings} */ settings) {
+      const { measures } = settings;
       start.setAttribute('aria-pressed', String(tool.active));
-      const state = JSON.stringify([measures, chosen]);
+      kinds.refresh(settings);
+      units.refresh(settings);
+      units.element.hidden = own() === null;
+      noUnit.hidden = own() !== null || !viewer.info;
+      const state = JSON.stringify([measures, chosen, unit(), own(), up()]);
       if (state === shown) return;
       shown = state;
       list.replaceChildren(...measures.map((measure, i) => {
+        const name = KINDS.find(([of]) => of === measure.kind)?.[1] ?? '';
         const choose = button('', () => { chosen = i; ui.refresh(); overlay.redraw(); });
         choose.className = 'item';
         choose.setAttribute('aria-pressed', String(i === chosen));
-        const parts = componentsOf(measure).map((x, axis) =>
-          h('span', { class: `axis-${'xyz'[axis]}` }, `${'xyz'[axis]} ${text(x)}`));
-        choose.append(h('strong', {}, text(distance(measure.from, measure.to))), h('span', { class: 'parts' }, ...parts));
+        choose.append(h('strong', {}, text(measure)), h('span', { class: 'kind' }, name),
+          h('span', { class: 'parts' }, ...partsOf(measure).map(([axis, part]) => h('span', { class: axis }, part))));
         return h('li', {}, choose, button(`Delete measure ${i + 1}`, () => {
           chosen = Math.max(0, Math.min(chosen, measures.length - 2));
           viewer.set({ measures: measures.filter((_, k) => k !== i) }, 'ui');

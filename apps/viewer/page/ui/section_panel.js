@@ -59,35 +59,41 @@ export function sectionPanel(ui) {
     if (plane) setPlane({ point: plane.point, normal: skyDirection(azimuth, elevation, viewer.camera().up) });
   };
   const azimuth = slider({
-    label: 'Azimuth of the arrow', min: 0, max: 360, step: 1, text: degrees,
+    label: 'Direction of the arrow', min: 0, max: 360, step: 1, text: degrees,
     get: () => arrow().azimuth, set: (value) => aim(value, arrow().elevation),
   });
   const elevation = slider({
-    label: 'Its elevation', min: -90, max: 90, step: 1, text: degrees,
+    label: 'Height of the arrow', min: -90, max: 90, step: 1, text: degrees,
     // Straight up, the azimuth would be lost.
     get: () => arrow().elevation, set: (value) => aim(arrow().azimuth, Math.max(-89.99, Math.min(value, 89.99))),
   });
   const across = (/** @type {number} */ axis) => button(`⟂ ${AXES[axis]}`, () => {
     const { plane } = section(), { eye, target } = viewer.camera();
     if (plane) setPlane({ point: plane.point, normal: axisVector(axis, Math.sign(eye[axis] - target[axis]) || 1) });
-  }, { title: `Across the ${AXES[axis]} axis` });
+  }, { title: `Cut across the ${AXES[axis]} axis` });
   const flip = button('Flip', () => {
     const { plane } = section();
     if (plane) setPlane({ point: plane.point, normal: scale(plane.normal, -1) });
   });
 
+  const hatch = toggle({
+    label: 'Hatching', hint: 'Draws lines on cut faces, which keep their place in the scene',
+    get: (s) => s.section.hatch, set: (on) => viewer.set({ section: { hatch: on } }, 'ui'),
+  });
   const boxPart = h('div', {}, ...sides.map((side) => side.element),
     h('div', { class: 'buttons' }, button('Whole scene', () => setBox(wholeBox()))));
   const planePart = h('div', {}, offset.element, azimuth.element, elevation.element, h('div', { class: 'grid' }, across(0), across(1), across(2), flip));
-  const refresh = refreshAll([boxOn, planeOn]);
+  const hatchPart = group('', hatch.element);
+  const refresh = refreshAll([boxOn, planeOn, hatch]);
   return {
-    element: h('div', {}, group('', boxOn.element, boxPart), group('', planeOn.element, planePart), h('p', { class: 'hint' },
-      'Drag the handles in the picture. The box keeps what is inside it; the plane removes the side of its arrow.')),
+    element: h('div', {}, group('', boxOn.element, boxPart), group('', planeOn.element, planePart), hatchPart, h('p', { class: 'hint' },
+      'Drag the handles in the picture, or type numbers. The box keeps what is inside it. The plane removes the side to which its arrow points.')),
     refresh(/** @type {Settings} */ settings) {
       const { box, plane } = settings.section, { low, high } = wholeBox();
       refresh(settings);
       boxPart.hidden = box === null;
       planePart.hidden = plane === null;
+      hatchPart.hidden = box === null && plane === null;
       sides.forEach((side, face) => side.limits(low[face >> 1], high[face >> 1]));
       if (box) refreshAll(sides)(settings);
       if (!plane) return;

@@ -45,13 +45,13 @@ export function statisticsPanel(ui) {
         ['Size', (info) => bytesText(info.fileBytes)],
         ['Triangles of the mesh', (info) => (info.source?.triangles ? countText(info.source.triangles) : null)],
         ['Resolution', (info) => `${countText(info.resolution)}³`],
-        ['Size of a voxel', (info) => lengthText(info.voxelSize, info.voxelSize * 0.01)],
+        ['Size of a voxel', (info) => `${lengthText(info.voxelSize, info.voxelSize * 0.01)} ${info.unit ?? ''}`.trim()],
         ['Voxels', (info) => countText(info.voxels)],
         ['Nodes of the DAG', (info) => countText(nodes(info.dagNodesPerLevel))],
         ['Bits per voxel', (info) => number(info.fileBytes * 8 / info.voxels)],
-        ['Stored', (info) => [info.hasColors && 'colours', info.hasNormals && 'normals'].filter(Boolean).join(', ') || 'geometry only'],
+        ['Attributes', (info) => [info.hasColors && 'colours', info.hasNormals && 'normals'].filter(Boolean).join(', ') || 'none'],
       ])),
-      group('Nodes per level', bars, h('p', { class: 'hint' }, 'Root on the left; logarithmic.')),
+      group('Nodes per level', bars, h('p', { class: 'hint' }, 'The root is on the left. The heights are logarithms of the numbers.')),
       group('Loaded', table([
         ['Levels', (info, s) => `${s.levelsLoaded} of ${info.levels}`],
         ['Levels shown', (info, s) => (s.levelsShown < s.levelsLoaded ? `${s.levelsShown} of ${info.levels}` : null)],
@@ -64,7 +64,7 @@ export function statisticsPanel(ui) {
         ['Steps per ray', (info, s) => number(s.stepsPerRay)],
         ['Steps per frame', (info, s) => countText(s.raysPerFrame * s.stepsPerRay)],
         ['Samples per pixel', (info, s) => `${s.samples} of ${s.samplesWanted}`],
-        ['Resolution', (info, s) => `${Math.round(s.scale * 100)}%`],
+        ['Size of the picture', (info, s) => `${Math.round(s.scale * 100)}%`],
       ]))),
     refresh() {
       for (const refresh of refreshers) refresh();

@@ -27,18 +27,21 @@ export class Status {
     this.container = container;
     this.name = h('h1', {});
     this.detail = h('p', {});
+    this.licence = h('p', { class: 'licence', hidden: true });
     const range = { 'aria-valuemin': 0, 'aria-valuemax': 100 };
     this.bar = h('div', { class: 'progress', role: 'progressbar', 'aria-label': 'Loading', ...range }, h('i', {}));
     this.message = h('div', { class: 'toast', hidden: true });
     this.pill = h('div', { class: 'toast tool-hint', hidden: true });
     this.live = h('div', { class: 'offscreen', role: 'status', 'aria-live': 'polite' });
-    container.append(this.bar, h('header', { class: 'title' }, this.name, this.detail, legend(viewer)), this.pill, this.message, this.live);
+    container.append(this.bar, h('header', { class: 'title' }, this.name, this.detail, this.licence, legend(viewer)), this.pill, this.message, this.live);
     this.timer = 0;
     /** @type {HTMLElement | null} */
     this.failure = null;
     viewer.on('info', () => this.#loading());
+    viewer.on('settings', (_, by) => { if (by !== 'hands' && by !== 'film') this.#name(); });
     for (const event of ['progress', 'level', 'still']) viewer.on(event, () => this.#loading());
     viewer.on('loaded', () => { this.isLoaded = true; this.#loading(); });
+    viewer.on('opened', () => { this.isLoaded = false; this.#mend(); });
     viewer.on('note', (text) => this.toast(text, true));
     viewer.on('error', (error) => this.fail(error));
     viewer.on('lost', () => this.fail({
@@ -52,6 +55,7 @@ export class Status {
     const first = () => {
       viewer.off('frame', first);
       container.classList.remove('waiting');
+      container.querySelector('.poster')?.remove();
     };
     viewer.on('frame', first);
     this.#loading();
@@ -67,8 +71,7 @@ export class Status {
     document.getElementById('start')?.remove();
     const s = this.viewer.statistics(), total = s.fileBytes || info.fileBytes;
     const done = this.isLoaded || (s.levelsLoaded >= info.levels && s.bytesLoaded >= total);
-    say(this.name, info.name || 'Scene');
-    document.title = `${info.name || 'Scene'} – voxdag`;
+    this.#name();
     say(this.detail, done ? `${countText(info.resolution)}³ · ${countText(info.voxels)} voxels`
       : `Level ${s.levelsLoaded} of ${info.levels} · ${bytesText(s.bytesLoaded)} of ${bytesText(total)}`);
     const part = done ? 100 : total > 0 ? Math.min(100, 100 * s.bytesLoaded / total) : 0;
@@ -76,6 +79,15 @@ export class Status {
     /** @type {HTMLElement} */ (this.bar.firstChild).style.transform = `scaleX(${part / 100})`;
     this.bar.classList.toggle('done', done);
     this.bar.setAttribute('aria-hidden', String(done));
+  }
+
+  /** Shows the title and the licence. */
+  #name() {
+    const { title, licence } = this.viewer.get(), name = title || this.viewer.info?.name || 'Scene';
+    say(this.name, name);
+    document.title = title || `${name} – voxdag`;
+    say(this.licence, licence);
+    this.licence.hidden = licence === '';
   }
 
   /** Shows a short message. @param {string} text @param {boolean} [isError] @param {boolean} [stays]  Until the next message. */

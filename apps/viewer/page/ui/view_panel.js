@@ -18,12 +18,12 @@ const SHOWS = [
 ];
 /** @type {{[show: string]: string}} */
 const MEANINGS = {
-  level: 'The level of the cell that each ray ends at.',
-  steps: 'How many cells each ray visits: the brighter, the more.',
-  sharing: 'How many places of the scene use the node that a ray ends in: the brighter, the more.',
+  level: 'The level of the octree that each pixel shows.',
+  steps: 'How many cells the ray of each pixel visits: the brighter, the more.',
+  sharing: 'How many places of the scene share the node of each pixel: the brighter, the more.',
   normal: 'The direction of the surface, as a colour.',
   depth: 'The distance along the view.',
-  occlusion: 'The part of the light of the sky that arrives.',
+  occlusion: 'How much light of the sky arrives: the brighter, the more.',
 };
 /** @type {[string, string][]} */
 export const SIDES = [
@@ -56,19 +56,19 @@ export function viewPanel(ui) {
   const show = choice({ label: 'Show', options: SHOWS, get: (s) => s.show, set: (value) => viewer.set({ show: value }, 'ui') });
   const levels = () => viewer.info?.levels ?? 1;
   const level = slider({
-    label: 'Finest level', min: 0, max: 1, step: 1, get: (s) => Math.min(s.level ?? levels(), levels()),
+    label: 'Finest level', hint: 'Each level halves the cells of the level before', min: 0, max: 1, step: 1, whole: true, get: (s) => Math.min(s.level ?? levels(), levels()),
     set: (value) => viewer.set({ level: value >= levels() ? null : value }, 'ui'),
     text: (value) => (value >= levels() ? 'all' : `${value} (${(2 ** value).toLocaleString('en')}³)`),
   });
   const colors = toggle({ label: 'Colours', get: (s) => s.colors, set: (on) => viewer.set({ colors: on }, 'ui') });
-  const normals = toggle({ label: 'Stored normals', get: (s) => s.normals, set: (on) => viewer.set({ normals: on }, 'ui') });
+  const normals = toggle({ label: 'Normals of the file', hint: 'Off: the page computes them from the voxels', get: (s) => s.normals, set: (on) => viewer.set({ normals: on }, 'ui') });
   const lod = slider({
     label: 'Level of detail', min: 0, max: 8, step: 0.25, get: (s) => s.lod, set: (value) => viewer.set({ lod: value }, 'ui'),
-    text: (x) => (x ? `${x} px` : 'off'), hint: 'Rays end at cells smaller than this',
+    text: (x) => (x ? `${x} px` : 'off'), hint: 'Details smaller than this many pixels are left out',
   });
   const cubes = slider({
-    label: 'Cubes from', min: 0, max: 100, step: 1, get: (s) => shownCubes(s, viewer.info), set: (value) => viewer.set({ cubes: value }, 'ui'),
-    text: (x) => (x ? `${x} px` : 'always'), hint: 'Voxels of at least this size look like cubes, smaller ones smooth',
+    label: 'Show voxels as cubes from', min: 0, max: 100, step: 1, get: (s) => shownCubes(s, viewer.info), set: (value) => viewer.set({ cubes: value }, 'ui'),
+    text: (x) => (x ? `${+x.toFixed(2)} px` : 'always'), hint: 'Voxels of at least this many pixels look like cubes, smaller ones like a smooth surface',
   });
   const change = (/** @type {Partial<import('../settings.js').Camera>} */ part) => {
     if (viewer.info) viewer.set({ camera: { ...viewer.camera(), ...part } }, 'ui');

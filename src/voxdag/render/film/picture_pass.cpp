@@ -11,6 +11,7 @@
 #include "voxdag/image/dither.hpp"
 #include "voxdag/image/exr.hpp"
 #include "voxdag/image/png.hpp"
+#include "voxdag/stored/attributes/material_colors.hpp"
 
 namespace voxdag {
 namespace {
@@ -114,6 +115,41 @@ ImageRgb8 grey_steps(const RenderedImage& image) {
   return colored(image, image.steps, [](float steps) { return grey(steps / 64); });
 }
 
+ImageF cell_values(const RenderedImage& image) {
+  ImageF out(image.width, image.height, 4);
+  for (std::size_t i = 0; i < image.cells.size(); ++i) {
+    const SeenCell& cell = image.cells[i];
+    for (int axis = 0; axis < 3; ++axis)
+      out.pixels[4 * i + static_cast<std::size_t>(axis)] = static_cast<float>(cell.voxel[axis]);
+    out.pixels[4 * i + 3] = static_cast<float>(cell.level);
+  }
+  return out;
+}
+
+/// Returns the display colour of a material, or of any other id.
+Vec3f id_color(std::uint32_t id) {
+  const Value8 color = material_color(id);
+  return Vec3f{static_cast<float>(color[0]), static_cast<float>(color[1]),
+               static_cast<float>(color[2])} *
+         (1.0f / 255);
+}
+
+ImageRgb8 cells(const RenderedImage& image) {
+  return colored(image, image.cells, [](const SeenCell& cell) {
+    if (cell.level < 0) return Vec3f{};
+    std::uint32_t id = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      id = hash_bits(id + static_cast<std::uint32_t>(cell.voxel[axis]));
+    return id_color(id % kMaxMaterials);
+  });
+}
+
+ImageRgb8 materials(const RenderedImage& image) {
+  return colored(image, image.material, [](float id) {
+    return id < 0 ? Vec3f{} : id_color(static_cast<std::uint32_t>(id));
+  });
+}
+
 /// Returns the picture with alpha; the colours are multiplied by it, as EXR files have them.
 ImageF with_alpha(const RenderedImage& image) {
   ImageF out(image.width, image.height, 4);
@@ -151,6 +187,21 @@ std::span<const PictureKind> picture_kinds() {
                   scalars<&Image::shadow>,
                   greys<&Image::shadow>,
                   &RenderOptions::with_shadow},
+      PictureKind{"albedo",
+                  {"R", "G", "B"},
+                  vectors<&Image::albedo>,
+                  light<&Image::albedo>,
+                  &RenderOptions::with_albedo},
+      PictureKind{"voxel",
+                  {"voxel.X", "voxel.Y", "voxel.Z", "voxel.level"},
+                  cell_values,
+                  cells,
+                  &RenderOptions::with_cells},
+      PictureKind{"material",
+                  {"material"},
+                  scalars<&Image::material>,
+                  materials,
+                  &RenderOptions::with_material},
       PictureKind{"steps", {"steps"}, scalars<&Image::steps>, heat, &RenderOptions::with_steps},
       PictureKind{
           "steps64", {"steps"}, scalars<&Image::steps>, grey_steps, &RenderOptions::with_steps}};

@@ -20,10 +20,13 @@ struct PictureKind {
 };
 
 /// Returns the table of all kinds. EXR holds the values: "picture", tone mapped in linear light;
-/// "radiance"; "depth", world units (Z); "normal" (N.X N.Y N.Z); "occlusion", "shadow" and "steps".
-/// PNG shows them: picture and radiance in sRGB; depth from white (nearest) to dark grey, and black
-/// for the background; normals as (n + 1) / 2; steps as a heat map up to their maximum. "steps64"
-/// has the values of "steps", and shows them in grey up to 64.
+/// "radiance"; "depth", world units (Z); "normal" (N.X N.Y N.Z); "occlusion", "shadow" and "steps";
+/// "albedo", the linear diffuse colour; "voxel", the lowest voxel of the cell and its level
+/// (voxel.X voxel.Y voxel.Z voxel.level), -1 where none is; "material", ids, -1 where none is. PNG
+/// shows them: picture, radiance and albedo in sRGB; depth from white (nearest) to dark grey, and
+/// black for the background; normals as (n + 1) / 2; steps as a heat map up to their maximum;
+/// voxels and materials each in a colour of its own. "steps64" has the values of "steps", and shows
+/// them in grey up to 64.
 std::span<const PictureKind> picture_kinds();
 
 /// Returns the kind with this name, or null.

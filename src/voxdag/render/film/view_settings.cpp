@@ -15,6 +15,7 @@ using Json = nlohmann::json;
 
 constexpr std::uint64_t kMaxBytes = std::uint64_t{16} << 20;
 constexpr int kVersion = 1;
+constexpr std::size_t kMaxTextBytes = 8000;
 
 /// Reads the settings. `key` is the whole key of a value, such as "sun.angle".
 class Reader {
@@ -25,6 +26,7 @@ class Reader {
     const Json json = read_json_file(file_, {kMaxBytes, "a view"});
     RenderOptions& options = settings_.options;
     options.ground = true;
+    options.section.hatch = true;
     each_member(
         json, "",
         {{"version", [&](const Json& value) { check_version(value); }},
@@ -58,17 +60,35 @@ class Reader {
             if (value != "light") ignore("show", "a picture shows the light; --pass writes others");
           }},
          {"section", [&](const Json& value) { read_section(value); }},
-         {"mode", nothing},
-         {"measures", nothing},
-         {"annotations", nothing},
-         {"path", nothing}});
+         {"mode",
+          [&](const Json& value) {
+            one_of(value, "mode", {"orbit", "fly", "walk"});
+          }},
+         {"title", [&](const Json& value) { settings_.title = text(value, "title"); }},
+         {"licence", [&](const Json& value) { settings_.licence = text(value, "licence"); }},
+         {"unit",
+          [&](const Json& value) {
+            if (!value.is_null()) one_of(value, "unit", {"m", "cm", "mm", "in", "ft"});
+          }},
+         {"measures",
+          [&](const Json& value) {
+            each_element(value, "measures",
+                         [&](auto& one, const auto& key) { check_measure(one, key); });
+          }},
+         {"annotations",
+          [&](const Json& value) {
+            each_element(value, "annotations",
+                         [&](auto& one, const auto& key) { check_note(one, key); });
+          }},
+         {"path", [&](const Json& value) {
+            each_element(value, "path",
+                         [&](auto& one, const auto& key) { check_path_key(one, key); });
+          }}});
     return std::move(settings_);
   }
 
  private:
   using Members = std::map<std::string, std::function<void(const Json&)>>;
-
-  static void nothing(const Json&) {}
 
   [[noreturn]] void refuse(const std::string& key, const std::string& reason) const {
     throw Error(file_, "", key.empty() ? reason : "\"" + key + "\" " + reason);
@@ -82,11 +102,23 @@ class Reader {
     if (!json.is_object()) refuse(key, key.empty() ? "must be an object" : "is not an object");
     for (const auto& [name, value] : json.items()) {
       const auto member = members.find(name);
-      if (member == members.end())
-        ignore((key.empty() ? "" : key + ".") + name, "the key is unknown");
-      else
+      if (member != members.end()) {
         member->second(value);
+        continue;
+      }
+      settings_.unknown.push_back((key.empty() ? "" : key + ".") + name);
+      ignore(settings_.unknown.back(), "the key is unknown");
     }
+  }
+  /// Calls check(element, key of the element) for each element of an array.
+  template <class Check>
+  void each_element(const Json& json, const std::string& key, const Check& check) const {
+    if (!json.is_array()) refuse(key, "is not an array");
+    for (std::size_t i = 0; i < json.size(); ++i) check(json[i], fmt::format("{}[{}]", key, i));
+  }
+  void need(const Json& json, const std::string& key, std::vector<const char*> all) const {
+    for (const char* const name : all)
+      if (!json.contains(name)) refuse(key + "." + name, "is missing");
   }
 
   double number(const Json& json, const std::string& key, double least, double most) const {
@@ -107,6 +139,20 @@ class Reader {
   bool flag(const Json& json, const std::string& key) const {
     if (!json.is_boolean()) refuse(key, "is not true or false");
     return json.get<bool>();
+  }
+
+  std::string text(const Json& json, const std::string& key) const {
+    if (!json.is_string()) refuse(key, "is not a text");
+    auto text = json.get<std::string>();
+    if (text.size() > kMaxTextBytes)
+      refuse(key, fmt::format("has more than {} bytes", kMaxTextBytes));
+    return text;
+  }
+  void one_of(const Json& json, const std::string& key,
+              std::initializer_list<std::string_view> names) const {
+    for (const std::string_view name : names)
+      if (json == name) return;
+    refuse(key, fmt::format("is none of {}", fmt::join(names, ", ")));
   }
 
   ToneMap tone(const Json& json) const {
@@ -187,14 +233,61 @@ class Reader {
 
   void read_section(const Json& json) {
     SectionOptions& section = settings_.options.section;
-    each_member(json, "section",
-                {{"box",
+    each_member(
+        json, "section",
+        {{"box",
+          [&](const Json& value) {
+            if (!value.is_null()) section.box = read_box(value, "section.box");
+          }},
+         {"hatch", [&](const Json& value) { section.hatch = flag(value, "section.hatch"); }},
+         {"plane", [&](const Json& value) {
+            if (!value.is_null()) section.plane = read_plane(value, "section.plane");
+          }}});
+  }
+
+  void check_measure(const Json& json, const std::string& key) {
+    const auto point = [&](const char* name) {
+      return [this, name, &key](const Json& value) { vector(value, key + "." + name); };
+    };
+    each_member(json, key,
+                {{"from", point("from")},
+                 {"to", point("to")},
+                 {"kind",
                   [&](const Json& value) {
-                    if (!value.is_null()) section.box = read_box(value, "section.box");
+                    one_of(value, key + ".kind", {"distance", "path", "area", "angle", "height"});
                   }},
-                 {"plane", [&](const Json& value) {
-                    if (!value.is_null()) section.plane = read_plane(value, "section.plane");
+                 {"points", [&](const Json& value) {
+                    each_element(value, key + ".points",
+                                 [&](auto& one, const auto& name) { vector(one, name); });
+                    if (value.size() < 2) refuse(key + ".points", "has less than 2 points");
                   }}});
+    if (!json.contains("points")) need(json, key, {"from", "to"});
+  }
+
+  void check_note(const Json& json, const std::string& key) {
+    each_member(json, key,
+                {{"text", [&](const Json& value) { text(value, key + ".text"); }},
+                 {"point", [&](const Json& value) { vector(value, key + ".point"); }},
+                 {"camera", [&](const Json& value) { check_camera(value, key + ".camera"); }}});
+    need(json, key, {"text", "point", "camera"});
+  }
+
+  /// Checks the members of a camera, and `time` of one that is a key of a path.
+  void check_camera(const Json& json, const std::string& key, bool has_time = false) {
+    Members members = {
+        {"eye", [&](const Json& value) { vector(value, key + ".eye"); }},
+        {"target", [&](const Json& value) { vector(value, key + ".target"); }},
+        {"up", [&](const Json& value) { direction(value, key + ".up"); }},
+        {"fov", [&](const Json& value) { number(value, key + ".fov", kMinFovDegrees, 179); }}};
+    if (has_time)
+      members["time"] = [&](const Json& value) { number(value, key + ".time", -1e9, 1e9); };
+    each_member(json, key, members);
+    need(json, key, {"eye", "target"});
+  }
+
+  void check_path_key(const Json& json, const std::string& key) {
+    check_camera(json, key, true);
+    need(json, key, {"time"});
   }
 
   Box3d read_box(const Json& json, const std::string& key) {

@@ -12,9 +12,11 @@ struct ViewSettings {
   /// their defaults.
   RenderOptions options;
   bool colors = true, normals = true;  ///< Show the colours, the normals that the scene stores.
+  std::string title, licence;          ///< Of a page; UTF-8, empty if the file has none.
   /// A warning for each setting that a picture cannot show and for each unknown key, such as
   /// "\"level\" is ignored: a picture shows the finest level".
   std::vector<std::string> ignored;
+  std::vector<std::string> unknown;  ///< The unknown keys, such as "sun.colour".
 };
 
 /// Reads at most 16 MiB of JSON. docs/viewer.md lists the keys; missing keys have their defaults.

@@ -6,7 +6,7 @@
 /** The first request holds the head of the file and, of all but the largest files, the first levels. */
 const HEAD_BYTES = 1 << 14, SLICE_BYTES = 1 << 22;
 
-/** @type {MemorySource | ServerSource} */
+/** @type {MemorySource | BlobSource | ServerSource} */
 let source;
 /** @type {ChunkTable} */
 let chunks;
@@ -122,9 +122,11 @@ async function loadAttributes(wanted) {
 /** @param {any} request */
 async function handle(request) {
   if (request.type === 'open') {
-    if (request.bytes !== undefined) {
-      source = new MemorySource(request.bytes);
-      head = source.bytes.subarray(0, Math.min(HEAD_BYTES, source.size));
+    let settings = null;
+    if (request.url === undefined) {
+      ({ source, settings } = request.file ? await openBlob(request.file) : { source: new MemorySource(request.bytes), settings });
+      head = new Uint8Array(Math.min(HEAD_BYTES, source.size));
+      await source.read(head, 0);
     } else {
       source = new ServerSource(request.url);
       head = await source.open(HEAD_BYTES);
@@ -132,7 +134,7 @@ async function handle(request) {
     bytesLoaded = head.length;
     chunks = await readChunkTable(source, head);
     info = await readSceneInfo(source, head, chunks);
-    send({ type: 'info', info, bytes: bytesLoaded });
+    send({ type: 'info', info, settings, bytes: bytesLoaded });
   } else if (request.type === 'load') {
     await loadLevels(request.shown);
     await loadAttributes(request);

@@ -4,6 +4,7 @@
 uniform float u_cube_pixels;
 uniform vec3 u_ground_middle, u_ground_up;  // relative to the grid's corner, in its sides
 uniform float u_ground_radius;              // 0: no ground
+uniform float u_hatch_period;               // of the lines on cut faces, in grid sides; 0: none
 uniform int u_show;            // SHOW_*
 uniform usampler2D u_node_instances, u_leaf_instances;
 uniform int u_color_bits, u_normal_bits;  // precision of the stored values; -1: none
@@ -12,6 +13,14 @@ uniform usampler2D u_color_words, u_color_pages, u_normal_words, u_normal_pages;
 layout(location = 0) out vec4 out_start;   // where rays start, grid coordinates; w: the cell's side, 0 without a hit
 layout(location = 1) out vec4 out_normal;  // shading normal; w: depth in grid sides
 layout(location = 2) out vec4 out_face;    // xy: octahedral normal of the face; z: colour code; w: the value to show
+
+// is_hatched() of render/hatch.hpp.
+bool isHatched(vec3 place, vec3 normal) {
+  if (u_hatch_period <= 0.0) return false;
+  vec3 size = abs(normal);
+  int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  return fract((place.x + place.y + place.z - place[axis]) / u_hatch_period) < LIGHT_HATCH_WIDTH;
+}
 
 void main() {
   vec3 direction = pixelDirection(pixelOfFragment());
@@ -50,7 +59,7 @@ void main() {
     normal = ray.cut == 4 ? u_section_plane.xyz : vec3(0.0);
     if (ray.cut < 4) normal[ray.cut - 1] = direction[ray.cut - 1] > 0.0 ? -1.0 : 1.0;
     face = normal;
-    color = -2.0;
+    color = isHatched(place, normal) ? -2.25 : -2.0;
   } else {
     int side = enteredFace(ray, hit);
     vec3 entered = side < 0 ? view : faceNormal(side);

@@ -54,7 +54,7 @@ vec4 shaded(bool is_hit, vec4 normal, vec4 face, vec3 direction, float open, flo
       uint code = uint(face.z);
       albedo = srgbToLinear(vec3(float(code & 255u), float(code >> 8u & 255u), float(code >> 16u)) / 255.0);
     } else if (face.z < -1.5) {
-      albedo = CUT_ALBEDO;
+      albedo = CUT_ALBEDO * (face.z < -2.1 ? LIGHT_HATCH_SHADE : 1.0);
     }
     vec3 light = skyLight(normal.xyz, -direction, open) + u_sun_light * lit;
     radiance = light * albedo;

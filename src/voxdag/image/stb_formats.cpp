@@ -1,8 +1,9 @@
-#include "voxdag/image/tga_bmp.hpp"
+#include "voxdag/image/stb_formats.hpp"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_BMP
+#define STBI_ONLY_HDR
 #define STBI_ONLY_TGA
 #define STBI_NO_STDIO
 #include <stb/stb_image.h>
@@ -56,6 +57,7 @@ std::optional<DecodedImage> decode_tga_or_bmp(std::span<const std::uint8_t> byte
   const char* const kind = is_bmp ? "BMP" : "TGA";
   const auto size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
+  if (stbi_is_hdr_from_memory(bytes.data(), size) != 0) return std::nullopt;
   if (bytes.size() < (is_bmp ? 30u : 18u) ||
       stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
     if (!is_bmp) return std::nullopt;
@@ -79,6 +81,27 @@ std::optional<DecodedImage> decode_tga_or_bmp(std::span<const std::uint8_t> byte
                 std::string("cannot read this ") + kind + " image: " + stbi_failure_reason());
   DecodedImage image(width, height, channels, 1, options.memory);
   std::copy_n(pixels.get(), image.bytes(), image.row(0));
+  return image;
+}
+
+ImageF decode_hdr(std::span<const std::uint8_t> bytes, const std::string& name) {
+  const auto size = static_cast<int>(bytes.size());
+  int width = 0, height = 0, channels = 0;
+  if (stbi_is_hdr_from_memory(bytes.data(), size) == 0 ||
+      stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0)
+    throw Error(name, "header", "not a Radiance HDR image");
+  check_image_size(name, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height));
+  // A row of runs has at least 2 bytes for each 127 values. stb_image does not tell where bytes
+  // end too early: it takes missing ones for zeros.
+  const std::uint64_t least =
+      static_cast<std::uint64_t>(height) * (static_cast<std::uint64_t>(width) * 4 / 127 * 2);
+  if (bytes.size() < least) throw Error(name, "", "the HDR image is truncated");
+  const std::unique_ptr<float, decltype(&stbi_image_free)> pixels(
+      stbi_loadf_from_memory(bytes.data(), size, &width, &height, &channels, 3), &stbi_image_free);
+  if (!pixels)
+    throw Error(name, "", std::string("cannot read this HDR image: ") + stbi_failure_reason());
+  ImageF image(width, height, 3);
+  std::copy_n(pixels.get(), image.pixels.size(), image.pixels.data());
   return image;
 }
 

@@ -1,11 +1,12 @@
 #pragma once
-/// Reads TGA and BMP files, using stb_image.
+/// Reads TGA, BMP and Radiance HDR files, using stb_image.
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "voxdag/image/decoded_image.hpp"
+#include "voxdag/image/image.hpp"
 
 namespace voxdag {
 
@@ -17,5 +18,9 @@ namespace voxdag {
 std::optional<DecodedImage> decode_tga_or_bmp(std::span<const std::uint8_t> bytes,
                                               const std::string& name,
                                               const ImageOptions& options = {});
+
+/// Decodes a Radiance HDR (.hdr, .pic) to linear R, G and B. Errors call the file `name`. Throws
+/// Error if the bytes are no such image, truncated, or more than the limits of image_limits.hpp.
+ImageF decode_hdr(std::span<const std::uint8_t> bytes, const std::string& name);
 
 }  // namespace voxdag

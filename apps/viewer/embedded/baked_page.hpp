@@ -1,0 +1,32 @@
+#pragma once
+/// The page with a view of its scene: what it shows first.
+#include <string>
+#include <vector>
+
+#include "viewer/embedded/page_files.hpp"
+
+namespace voxdag {
+
+/// What a page shows first. Empty members are left to the page.
+struct PageView {
+  std::string settings;  ///< JSON as the page saves it: voxdag/render/film/view_settings.hpp.
+  std::string title;     ///< Of the page, until it has read its settings.
+  std::string poster;    ///< Data URL of a picture that is shown until the scene has arrived.
+};
+
+/// The files of the page, in which index.html has the view. The files refer to this object.
+class BakedPage {
+ public:
+  explicit BakedPage(const PageView& view);
+  BakedPage(const BakedPage&) = delete;
+  BakedPage& operator=(const BakedPage&) = delete;
+  ~BakedPage() = default;
+
+  std::span<const PageFile> files() const { return files_; }
+
+ private:
+  std::string index_;
+  std::vector<PageFile> files_;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,65 @@
+#include "view/page_view.hpp"
+
+#include "viewer/site/base64.hpp"
+#include "voxdag/cpu/render_image.hpp"
+#include "voxdag/cpu/with_home.hpp"
+#include "voxdag/image/jpeg_writer.hpp"
+#include "voxdag/render/film/json_file.hpp"
+#include "voxdag/render/film/picture_pass.hpp"
+#include "voxdag/render/film/view_settings.hpp"
+
+namespace voxdag::cli {
+namespace {
+
+constexpr int kPosterWidth = 640, kPosterHeight = 360, kPosterQuality = 75;
+constexpr SizeLimit kSettingsLimit{std::uint64_t{16} << 20, "a view"};
+
+}  // namespace
+
+std::vector<Option> add_page_view_options(const Command& command, PageViewArguments& arguments) {
+  return {command.text("--view", arguments.file, "SETTINGS.json",
+                       "What the page shows first: camera, light, section, measures, notes, title "
+                       "and licence. The page saves this file; docs/viewer.md lists its keys"),
+          command.text("--title", arguments.title, "TEXT",
+                       "Title of the page (default: that of --view, else the name of the scene)")};
+}
+
+PageView read_page_view(const PageViewArguments& arguments) {
+  nlohmann::json json = {{"version", 1}};
+  PageView view;
+  if (!arguments.file.empty()) {
+    const ViewSettings settings = read_view_settings(arguments.file);
+    if (!settings.unknown.empty())
+      throw Error(arguments.file, "", "\"" + settings.unknown.front() + "\" is an unknown key");
+    json = read_json_file(arguments.file, kSettingsLimit);
+    view.title = settings.title;
+  }
+  if (!arguments.title.empty()) json["title"] = view.title = arguments.title;
+  if (!arguments.file.empty() || !arguments.title.empty()) view.settings = json.dump();
+  return view;
+}
+
+std::string render_poster(const PageViewArguments& arguments, const ShownScene& scene, Work work) {
+  const ReducedDag& dag = scene.dag();
+  ViewSettings settings;
+  settings.options.ground = true;
+  if (!arguments.file.empty()) settings = read_view_settings(arguments.file);
+  RenderOptions& options = settings.options;
+  options.width = kPosterWidth;
+  options.height = kPosterHeight;
+  options.samples_per_pixel = 4;
+  const Presentation& presentation = dag.metadata().presentation;
+  show_as(presentation, options.view);
+  if (presentation.cubes && options.cube_pixels == RenderOptions{}.cube_pixels)
+    options.cube_pixels = 0;
+  DagAttributesView attributes = dag.attributes();
+  if (!settings.colors) attributes.colors = {};
+  if (!settings.normals) attributes.normals = {};
+  options.look = ColoredDagView{dag.dag(), attributes};
+  const CpuScene voxels(dag.dag());
+  const RenderedImage image = render_image(voxels, dag.metadata().grid, options, work);
+  return "data:image/jpeg;base64," +
+         base64(encode_jpeg(find_picture_kind("picture")->shown(image), kPosterQuality));
+}
+
+}  // namespace voxdag::cli

@@ -1,0 +1,189 @@
+#pragma once
+/// The light of the sky and of other surfaces, by tracing paths: the reference for the pictures.
+///
+/// The method is unbiased: with more paths the light converges to that of diffuse surfaces of the
+/// picture's albedo under the picture's sky, sun and lamps, reflected up to N times. A path starts
+/// at a view sample in a direction with cosine-weighted density. Where it leaves the scene, it
+/// brings the sky's radiance. Where it meets a surface, it brings the light of the sun and of each
+/// lamp there, one shadow ray each, and goes on in a new direction. Source: J. Kajiya, "The
+/// Rendering Equation", SIGGRAPH 1986.
+///
+/// The first directions come from the table of occlusion rays. Later ones, and the points on
+/// lights, are hashes of pixel, sample, path and bounce, so that every machine traces the same
+/// paths.
+#include "voxdag/render/ambient_occlusion.hpp"
+#include "voxdag/render/direct_light.hpp"
+#include "voxdag/render/sky.hpp"
+
+namespace voxdag {
+
+/// Random numbers for one bounce of a path. Each call of next() returns other bits.
+class PathRandom {
+ public:
+  VOXDAG_HD PathRandom(int x, int y, int path, int bounce)
+      : state_(hash_bits(hash_bits(hash_bits(hash_bits(static_cast<std::uint32_t>(x)) +
+                                             static_cast<std::uint32_t>(y)) +
+                                   static_cast<std::uint32_t>(path)) +
+                         static_cast<std::uint32_t>(bounce))) {}
+
+  VOXDAG_HD std::uint32_t next() { return state_ = hash_bits(state_ + 0x9E3779B9u); }
+  /// Returns a number in (-1,1).
+  VOXDAG_HD float next_signed() { return (static_cast<float>(next() >> 8) + 0.5f) * 0x1p-23f - 1; }
+
+ private:
+  std::uint32_t state_;
+};
+
+/// Returns a direction around (0,0,1) with cosine-weighted density: a point of the unit disc,
+/// lifted to the hemisphere (Malley's method).
+VOXDAG_HD inline Vec3f cosine_direction(PathRandom& random) {
+  constexpr int kTries = 32;  // all fail once in 10^21
+  for (int i = 0; i < kTries; ++i) {
+    const float x = random.next_signed(), y = random.next_signed();
+    const float up2 = 1 - x * x - y * y;
+    if (up2 > 0) return {x, y, std::sqrt(up2)};
+  }
+  return {0, 0, 1};
+}
+
+/// The vertex at which a path is.
+struct PathVertex {
+  SurfacePoint point;
+  SightLine line;       ///< The next line of the path, in world units.
+  ViewSample seen;      ///< What lies on it, once it is cast.
+  Vec3f carried;        ///< The part of the radiance from here that arrives at the view sample.
+  Vec3f arriving;       ///< Irradiance of the current light's sample.
+  bool is_lit = false;  ///< The sample is above the surface.
+};
+
+/// Arrays for trace_paths(), indexed by the tile's pixel.
+template <int kPixels>
+struct PathScratch {
+  PathVertex vertices[kPixels];
+  Vec3f gathered[kPixels];  ///< Radiance that the pixel's paths brought, summed.
+};
+
+/// Returns the next ray of a path, and sets vertex.line. `path` counts the pixel's paths over all
+/// samples.
+VOXDAG_HD inline CastRay path_ray(const RenderSetup& setup, const ViewSample& sample,
+                                  const PixelSamples& pixel, int x, int y, int path, int bounce,
+                                  PathVertex& vertex) {
+  const SurfacePoint& point = vertex.point;
+  const auto make_ray = [&](Vec3f direction, float /*t_max*/) {
+    vertex.line = {setup.grid.origin +
+                       (static_cast<Vec3d>(point.start.position) - Vec3d{1, 1, 1}) * setup.side(),
+                   static_cast<Vec3d>(direction) * setup.side()};
+    GridRay ray = bounce == 0 ? ray_from(setup, sample, point, direction, 0, HUGE_VALF)
+                              : make_grid_ray(point.start, direction, 0, HUGE_VALF);
+    limit_to(setup.section, ray);
+    return ray;
+  };
+  if (bounce == 0) return occlusion_ray(setup.tables, 1, 0, point, pixel, path, make_ray);
+  PathRandom random(x, y, path, bounce);
+  return {make_ray(around_normal(point, cosine_direction(random)), 0), {point.cell_side, 0}};
+}
+
+/// Adds the light of light `index` at the vertices of `active` pixels, whose last line ended there
+/// after `bounce` bounces, to paths.gathered. Returns the number of rays.
+template <class Caster, class Scratch, class Paths>
+VOXDAG_HD inline int add_path_light(const Caster& caster, const RenderSetup& setup, int index,
+                                    const ViewTile& tile, int path, int bounce, int active,
+                                    Scratch& scratch, Paths& paths) {
+  const Light& light = setup.lights[index];
+  caster.any(
+      active,
+      [&](int i) {
+        const int pixel = scratch.active[i];
+        PathVertex& vertex = paths.vertices[pixel];
+        PathRandom random(tile.x + tile.column(pixel), tile.y + tile.row(pixel), path,
+                          (bounce + 1) * RenderSetup::kMaxLights * 2 + index);
+        const std::uint32_t bits = random.next();
+        const PixelSamples place = samples_of_hash(setup.tables, bits);
+        const LightSample sample = sample_light(
+            setup.tables, light, vertex.point, place,
+            static_cast<int>(random.next() % static_cast<std::uint32_t>(setup.tables.light_count)));
+        vertex.arriving = light.color * sample.weight;
+        vertex.is_lit = sample.weight > 0;
+        CastRay ray;
+        if (!vertex.is_lit || !setup.settings.shadows) return ray;
+        const LightInterval interval = light_interval(light);
+        ray.ray =
+            make_grid_ray(vertex.point.start, sample.direction, interval.first, interval.last);
+        limit_to(setup.section, ray.ray);
+        ray.stop.at_start = vertex.point.cell_side;
+        return ray;
+      },
+      [&](int i, bool is_hit) {
+        const int pixel = scratch.active[i];
+        const PathVertex& vertex = paths.vertices[pixel];
+        if (is_hit || !vertex.is_lit) return;
+        paths.gathered[pixel] =
+            paths.gathered[pixel] + vertex.carried * vertex.arriving * kInversePi;
+      });
+  return active;
+}
+
+/// Sets paths.gathered and scratch.open (the paths that leave the scene at once) for the pixels
+/// that show something. Returns the number of rays.
+template <class Nodes, class Caster, class Scratch, class Paths>
+VOXDAG_HD inline int trace_paths(const Nodes& nodes, const Caster& caster, const RenderSetup& setup,
+                                 const ViewTile& tile, Scratch& scratch, Paths& paths) {
+  const int pixels = tile.width * tile.height, count = setup.settings.occlusion_samples;
+  for (int pixel = 0; pixel < pixels; ++pixel) {
+    scratch.open[pixel] = 0;
+    paths.gathered[pixel] = {};
+    scratch.pixels[pixel] =
+        pixel_samples(setup.tables, tile.x + tile.column(pixel), tile.y + tile.row(pixel), 0);
+  }
+  int rays = 0;
+  for (int k = 0; k < count; ++k) {
+    const int path = tile.sample_index * count + k;
+    int active = 0;
+    for (int pixel = 0; pixel < pixels; ++pixel) {
+      if (!scratch.points[pixel].is_hit()) continue;
+      paths.vertices[pixel].point = scratch.points[pixel];
+      paths.vertices[pixel].carried = {1, 1, 1};
+      scratch.active[active++] = pixel;
+    }
+    for (int bounce = 0; active > 0; ++bounce) {
+      caster.closest(
+          active,
+          [&](int i) {
+            const int pixel = scratch.active[i];
+            return path_ray(setup, scratch.samples[pixel], scratch.pixels[pixel],
+                            tile.x + tile.column(pixel), tile.y + tile.row(pixel), path, bounce,
+                            paths.vertices[pixel]);
+          },
+          [&](int i, const GridRay& ray, const typename FoundBy<Nodes>::Type& cell, bool is_hit) {
+            PathVertex& vertex = paths.vertices[scratch.active[i]];
+            vertex.seen = {};
+            if (!is_hit) return;
+            const Vec3d away = vertex.line.origin - setup.camera.eye +
+                               vertex.line.direction * ray.to_world_t(static_cast<double>(cell.t));
+            vertex.seen = view_sample_of(nodes, setup, vertex.line, ray, cell, length(away));
+          });
+      rays += active;
+      int left = 0;
+      for (int i = 0; i < active; ++i) {
+        const int pixel = scratch.active[i];
+        PathVertex& vertex = paths.vertices[pixel];
+        if (!vertex.seen.is_hit()) {
+          if (bounce == 0) ++scratch.open[pixel];
+          const auto out = static_cast<Vec3f>(normalized(vertex.line.direction));
+          paths.gathered[pixel] =
+              paths.gathered[pixel] + vertex.carried * sky_radiance(setup.sky, out);
+        } else if (bounce < setup.settings.bounces) {
+          vertex.point = make_surface_point(nodes, setup, vertex.seen, vertex.line);
+          vertex.carried = vertex.carried * vertex.seen.albedo;
+          scratch.active[left++] = pixel;
+        }
+      }
+      active = left;
+      for (int light = 0; light < setup.light_count && active > 0; ++light)
+        rays += add_path_light(caster, setup, light, tile, path, bounce, active, scratch, paths);
+    }
+  }
+  return rays;
+}
+
+}  // namespace voxdag
