@@ -26,7 +26,7 @@ command -v node >/dev/null || voxdag_test_packages+=(nodejs)
 # What `scripts/test.sh --extended` and `--tidy` need beside.
 voxdag_extended_packages=(
   libopenvdb-dev libnanovdb-dev libboost-dev  # .vdb and .nvdb volumes
-  clang clang-tidy
+  clang clang-tidy libclang-rt-14-dev
 )
 
 # The tests of the viewer in browsers skip themselves without these.

@@ -67,7 +67,11 @@ void main() {
     float cell_pixels = cell_side / (u_pixel_size * depth);
     float cube = smoothStep(u_cube_pixels * 0.5, u_cube_pixels, cell_pixels);
     normal = entered;
-    if (cube < 1.0 && hit.level >= 2) normal = normalize(mix(surfaceNormal(hit.level, cell, view, entered), entered, cube));
+    SmoothSurface smooth_one = SmoothSurface(entered, 0.0, 0.0);
+    if (cube < 1.0 && hit.level >= 2) {
+      smooth_one = smoothSurface(hit.level, cell, view, entered);
+      normal = normalize(mix(smooth_one.normal, entered, cube));
+    }
     face = normal;
 #ifdef HAS_LOOK
     if (u_finest >= 0) {
@@ -85,8 +89,14 @@ void main() {
       }
     }
 #endif
-    float below = cubeHeight(face) - dot(face, entered);
-    if (below > 0.0) place += face * (below * cell_side);
+    // voxel_view_sample() of render/voxel_view_samples.hpp.
+    float lift = max(cubeHeight(face) - dot(face, entered), 0.0);
+    float trust = smooth_one.is_flat * (1.0 - cube);
+    if (trust > 0.0) {
+      vec3 from_centre = place / cell_side - (vec3(cell) + 0.5);
+      lift = mix(lift, smooth_one.height - dot(from_centre, face), trust);
+    }
+    place += face * (lift * cell_side);
   }
   vec3 start = u_show == SHOW_LIGHT || u_show == SHOW_OCCLUSION ? startPoint(place, face, cell_side, direction, depth)
                                                                 : gridPoint(place);

@@ -1,4 +1,4 @@
-// The surface that a ray hit: a smooth normal from the cells around it, and the point at which its
+// The surface that a ray hit: a smooth surface from the cells around it, and the point at which its
 // shadow and occlusion rays start. The port of render/surface_normal.hpp, trace/cell_blocks.hpp and
 // render/surface_point.hpp, whose comments explain the method.
 
@@ -37,8 +37,13 @@ uvec2 cellMask(uint node, int level) {
 }
 
 struct LayerFit {
+  vec3 normal, mean;
+  float thickness;
+};
+
+struct SmoothSurface {
   vec3 normal;
-  float thickness, outwards;
+  float height, is_flat;
 };
 
 // Sums of the fit over 32 cells of a block, from its lower (half = 0) or upper half.
@@ -87,7 +92,7 @@ LayerFit fitLayer(int level, ivec3 cell, vec3 offset, vec3 front) {
       }
     }
   }
-  if (!(weight > 0.0)) return LayerFit(front, 0.0, 0.0);
+  if (!(weight > 0.0)) return LayerFit(front, vec3(0.0), 0.0);
   mean /= weight;
   vec3 s = vec3(1.0 / 12.0) + squares / weight - mean * mean;                                    // xx yy zz
   vec3 p = products / weight - vec3(mean.x * mean.y, mean.x * mean.z, mean.y * mean.z);          // xy xz yz
@@ -97,14 +102,14 @@ LayerFit fitLayer(int level, ivec3 cell, vec3 offset, vec3 front) {
   mat3 adjugate = mat3(a.x, b.x, b.y, b.x, a.y, b.z, b.y, b.z, a.z);
   vec3 normal = front;
   for (int i = 0; i < NORMAL_POWER; ++i) normal = normalize(adjugate * normal);
-  return LayerFit(normal, dot(normal, covariance * normal), -dot(normal, mean));
+  return LayerFit(normal, mean, dot(normal, covariance * normal));
 }
 
-vec3 surfaceNormal(int level, ivec3 cell, vec3 view, vec3 face) {
+SmoothSurface smoothSurface(int level, ivec3 cell, vec3 view, vec3 face) {
   LayerFit fine = fitLayer(level, cell, vec3(0.0), normalize(view + face));
   vec3 normal = fine.normal;
   float edge = smoothStep(NORMAL_PLANE, NORMAL_EDGE, fine.thickness);
-  if ((dot(normal, view) < 0.0) != (dot(normal, face) < 0.0) && fine.outwards < 0.0) normal = -normal;
+  if ((dot(normal, view) < 0.0) != (dot(normal, face) < 0.0) && dot(normal, fine.mean) > 0.0) normal = -normal;
   float outline = edge * smoothStep(NORMAL_OUTLINE_COSINE, 0.0, dot(normal, view));
   normal = normalize(mix(normal, face, outline));
   for (int up = 1; up <= u_coarser_fits && level - up >= 2; ++up) {
@@ -115,7 +120,7 @@ vec3 surfaceNormal(int level, ivec3 cell, vec3 view, vec3 face) {
     if (trust <= 0.0) break;
     normal = normalize(mix(normal, fit.normal, trust));
   }
-  return normal;
+  return SmoothSurface(normal, dot(normal, fine.mean), 1.0 - edge);
 }
 
 float cubeHeight(vec3 normal) {
