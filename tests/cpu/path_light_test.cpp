@@ -147,7 +147,7 @@ TEST(PathLight, ACornellBoxOfVoxelsHasTheLightOfItsRadiosity) {
   constexpr double kAlbedo = 0.7, kPixel = 0.197;  // no pixel shows an edge of voxels
   RenderOptions options = path_picture(3, 1024);
   options.width = options.height = 7;
-  options.albedo = {kAlbedo, kAlbedo, kAlbedo};
+  options.albedo = Vec3f{1, 1, 1} * static_cast<float>(kAlbedo);
   options.lights = {point_light({0, 0, 0})};
   options.lights[0].color = Vec3f{1, 1, 1};
   options.view.eye = {0, 0.2, 0};
