@@ -116,11 +116,11 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
   return {normal, dot(normal, covariance * normal), mean};
 }
 
-/// Returns the surface at `cell` of `level` (2..L), with a normal of unit length. `view` is the unit vector to
-/// the viewer, `face` the normal of the face that the ray entered (or `view`). At outlines these
-/// two can lie on different sides of the layer. Then the side on which the cell lies counts as the
-/// outer side, because outlines are convex. Where an edge turns away from the viewer, the normal is
-/// `face`.
+/// Returns the surface at `cell` of `level` (2..L), with a normal of unit length. `view` is the
+/// unit vector to the viewer, `face` the normal of the face that the ray entered (or `view`). At
+/// outlines these two can lie on different sides of the layer. Then the side on which the cell lies
+/// counts as the outer side, because outlines are convex. Where an edge turns away from the viewer,
+/// the normal is `face`.
 template <class Nodes>
 VOXDAG_HD inline SmoothSurface smooth_surface(const Nodes& nodes, int level, Vec3i cell, Vec3f view,
                                               Vec3f face) {
