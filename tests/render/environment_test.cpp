@@ -80,7 +80,7 @@ TEST(Environment, ASmallSunBecomesALightAndLeavesTheSky) {
   });
   const double angle = 2 * std::numbers::pi * (1 - static_cast<double>(cosine));
   EXPECT_GT(dot(environment.sun_direction(), towards), 0.9999f);
-  // What stays in the sky is 20 times the mean.
+  // The sky keeps radiance of 20 times the mean there.
   EXPECT_NEAR(static_cast<double>(environment.sun_irradiance().x) / (1000 * angle), 1, 0.1);
   EXPECT_NEAR(environment.mean_luminance(), 1, 0.1);
 }

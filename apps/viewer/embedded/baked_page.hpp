@@ -1,5 +1,5 @@
 #pragma once
-/// The page with a view of its scene: what it shows first.
+/// A page that begins with a given view of its scene.
 #include <string>
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace voxdag {
 
-/// What a page shows first. Empty members are left to the page.
+/// The settings, title and poster with which a page begins. The page chooses what is empty.
 struct PageView {
   std::string settings;  ///< JSON as the page saves it: voxdag/render/film/view_settings.hpp.
   std::string title;     ///< Of the page, until it has read its settings.

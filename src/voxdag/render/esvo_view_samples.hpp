@@ -1,5 +1,5 @@
 #pragma once
-/// What rays show of an ESVO: shapes cut by contours, with colours and normals.
+/// The view samples of rays at an ESVO: shapes cut by contours, with colours and normals.
 #include "voxdag/render/surface_point.hpp"
 #include "voxdag/render/voxel_view_samples.hpp"
 #include "voxdag/trace/esvo_cast.hpp"

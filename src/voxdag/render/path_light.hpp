@@ -50,7 +50,7 @@ VOXDAG_HD inline Vec3f cosine_direction(PathRandom& random) {
 struct PathVertex {
   SurfacePoint point;
   SightLine line;       ///< The next line of the path, in world units.
-  ViewSample seen;      ///< What lies on it, once it is cast.
+  ViewSample seen;      ///< The surface on that line, once it is cast.
   Vec3f carried;        ///< The part of the radiance from here that arrives at the view sample.
   Vec3f arriving;       ///< Irradiance of the current light's sample.
   bool is_lit = false;  ///< The sample is above the surface.

@@ -1,5 +1,5 @@
 #pragma once
-/// The primary rays of a tile, and what they show of the voxels of a DAG.
+/// The primary rays of a tile, and the view samples of rays at the voxels of a DAG.
 #include "voxdag/render/hatch.hpp"
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/render/stored_look.hpp"
