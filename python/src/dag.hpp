@@ -9,7 +9,7 @@
 #include <string>
 
 #include "voxdag/cpu/cpu_scene.hpp"
-#include "voxdag/cpu/with_home.hpp"
+#include "voxdag/cpu/presentation.hpp"
 #include "voxdag/file/model/dag_model.hpp"
 #include "voxdag/stored/attributes/look.hpp"
 

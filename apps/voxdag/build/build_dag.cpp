@@ -10,7 +10,7 @@
 #include "cli/stopwatch.hpp"
 #include "voxdag/builders/attributes/cut_alpha.hpp"
 #include "voxdag/core/io/process_memory.hpp"
-#include "voxdag/cpu/with_home.hpp"
+#include "voxdag/cpu/presentation.hpp"
 #include "voxdag/file/model/written_by.hpp"
 #include "voxdag/file/report/dag_report.hpp"
 #include "voxdag/file/report/human.hpp"

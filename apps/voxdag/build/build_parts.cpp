@@ -12,7 +12,7 @@
 #include "voxdag/cluster/parts_job.hpp"
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/core/io/temporary_folder.hpp"
-#include "voxdag/cpu/with_home.hpp"
+#include "voxdag/cpu/presentation.hpp"
 #include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/model/dag_model.hpp"
 #include "voxdag/file/model/written_by.hpp"

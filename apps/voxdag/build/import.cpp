@@ -16,7 +16,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/core/with_file_name.hpp"
-#include "voxdag/cpu/with_home.hpp"
+#include "voxdag/cpu/presentation.hpp"
 #include "voxdag/file/report/dag_report.hpp"
 #include "voxdag/file/report/human.hpp"
 #include "voxdag/formats/exports/export_scene.hpp"

@@ -6,7 +6,7 @@
 #include "cli/parse.hpp"
 #include "cli/written_files.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/cpu/with_home.hpp"
+#include "voxdag/cpu/presentation.hpp"
 #include "voxdag/file/model/edited.hpp"
 
 namespace voxdag::cli {

@@ -1,8 +1,8 @@
 #include "view/page_view.hpp"
 
 #include "viewer/site/base64.hpp"
+#include "voxdag/cpu/presentation.hpp"
 #include "voxdag/cpu/render_image.hpp"
-#include "voxdag/cpu/with_home.hpp"
 #include "voxdag/image/jpeg_writer.hpp"
 #include "voxdag/render/film/json_file.hpp"
 #include "voxdag/render/film/picture_pass.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-/// Chooses the home view of a scene that is about to be saved.
+/// Chooses the presentation of a scene that is about to be saved, and shows a scene by it.
 #include "voxdag/file/scene_metadata.hpp"
 #include "voxdag/render/view.hpp"
 
