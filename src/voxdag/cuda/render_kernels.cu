@@ -1,7 +1,7 @@
 #include "voxdag/cuda/beam_start.hpp"
 #include "voxdag/cuda/launch.hpp"
+#include "voxdag/cuda/render_kernel.hpp"
 #include "voxdag/cuda/render_kernels.hpp"
-#include "voxdag/cuda/render_pixel.hpp"
 #include "voxdag/cuda/with_nodes.hpp"
 #include "voxdag/render/count_steps.hpp"
 #include "voxdag/trace/partial_nodes.hpp"
@@ -32,21 +32,6 @@ __global__ void __launch_bounds__(kBeamThreads)
                                                  kCoarseBeamPixels);
   count_steps(nodes, setup, static_cast<int>(i % across) * kCoarseBeamPixels,
               static_cast<int>(i / across) * kCoarseBeamPixels);
-}
-
-/// Adds the counts of all threads of the warp to `*sum`.
-__device__ void add_of_warp(unsigned long long* sum, unsigned long long count) {
-  for (int step = 16; step > 0; step /= 2) count += __shfl_down_sync(~0u, count, step);
-  if (threadIdx.x % 32 == 0) atomicAdd(sum, count);
-}
-
-template <class Scratch, class Nodes, class Caster>
-__global__ void __launch_bounds__(kBlockPixels)
-    render_kernel(Nodes nodes, Caster caster, const __grid_constant__ RenderSetup setup,
-                  const __grid_constant__ LaunchRange range, const ViewSample* view_samples,
-                  unsigned long long* rays) {
-  add_of_warp(rays, render_pixel<Scratch>(nodes, caster, setup, range, view_samples,
-                                          range.first_block + blockIdx.x, threadIdx.x));
 }
 
 __global__ void __launch_bounds__(kBlockPixels)
@@ -108,19 +93,14 @@ void launch_steps(const DeviceVoxels& voxels, const RenderSetup& setup, std::uin
 
 void launch_render(const DeviceVoxels& voxels, const RenderSetup& setup, const LaunchRange& range,
                    const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream) {
+  // Kernels of their own trace paths: they need more registers.
+  if (setup.settings.bounces >= 0)
+    return launch_paths(voxels, setup, range, view_samples, rays, stream);
   with_all_nodes(
       voxels, [&]<class BeamNodes, class Nodes>(const BeamNodes& beam_nodes, const Nodes& nodes) {
-        const auto run = [&]<class Scratch>(const Scratch*) {
-          launch("rendering", render_kernel<Scratch, BeamNodes, ScalarCaster<Nodes>>,
-                 range.last_block - range.first_block, kBlockPixels, stream, beam_nodes,
-                 ScalarCaster(nodes), setup, range, view_samples, rays);
-        };
-        // Two kernels, because one that can trace paths needs more registers.
-        using Paths = TileScratch<1, PathScratch<1>>;
-        if (setup.settings.bounces >= 0)
-          run(static_cast<const Paths*>(nullptr));
-        else
-          run(static_cast<const TileScratch<1>*>(nullptr));
+        launch("rendering", render_kernel<TileScratch<1>, BeamNodes, ScalarCaster<Nodes>>,
+               range.last_block - range.first_block, kBlockPixels, stream, beam_nodes,
+               ScalarCaster(nodes), setup, range, view_samples, rays);
       });
 }
 

@@ -89,6 +89,10 @@ void launch_beams(const DeviceVoxels& voxels, const RenderSetup& setup, std::uin
 void launch_steps(const DeviceVoxels& voxels, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, cudaStream_t stream);
 
+/// Does what launch_render() does for a picture with paths.
+void launch_paths(const DeviceVoxels& voxels, const RenderSetup& setup, const LaunchRange& range,
+                  const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream);
+
 /// Runs render_pixel() for all pixels of the range and adds the number of rays to `*rays`.
 void launch_render(const DeviceVoxels& voxels, const RenderSetup& setup, const LaunchRange& range,
                    const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream);
