@@ -44,7 +44,9 @@ describeInBrowsers('a film', (browserName, browser) => {
     assert.equal((await path()).length, 21);
 
     // The last key but one is dragged to the left, as far as its neighbour allows.
-    const keys = await page.$$('.time-line .handle'), spot = await keys[19].boundingBox();
+    const keys = await page.$$('.time-line .handle');
+    await keys[19].scrollIntoView();
+    const spot = await keys[19].boundingBox();
     assert.ok(spot);
     await page.mouse.move(spot.x + spot.width / 2, spot.y + spot.height / 2);
     await page.mouse.down();

@@ -38,9 +38,11 @@ describeInBrowsers('materials', (_, browser) => {
     const voxels = (/** @type {string} */ file) => JSON.parse(voxdag('info', file, '--json')).voxels;
     /** Opens a file from in front. @param {string} file */
     const load = async (file) => {
-      const server = await view(file), page = await open(browser(), `${server.url}#ao=0&shadows=off`, { width: 700, height: 120 });
+      const server = await view(file), page = await open(browser(), `${server.url}#ao=0&shadows=off`, { width: 1000, height: 120 });
       await page.waitForFunction('window.voxdag.viewer.arrival?.hasEnded');
       await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.set({ lod: 0, camera: { eye: [0.52, 0.5, 3], target: [0.5, 0.5, 0.5], up: [0, 1, 0], fov: 30 } }));
+      // The open panel takes room from the picture.
+      await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('materials'));
       return { server, page };
     };
     const hits = (/** @type {import('puppeteer-core').Page} */ page) => page.evaluate(() => {
@@ -48,7 +50,7 @@ describeInBrowsers('materials', (_, browser) => {
       return cells.map((x, i) => (i % 4 === 3 ? x & 0x1ffff : x)).join();  // without the steps
     });
     const pick = (/** @type {import('puppeteer-core').Page} */ page) => page.evaluate(async () => {
-      const { viewer } = /** @type {any} */ (window).voxdag, hit = await viewer.pick(350, 60);
+      const { viewer } = /** @type {any} */ (window).voxdag, hit = await viewer.pick(viewer.canvas.clientWidth / 2, 60);
       return { voxel: hit.voxel, face: hit.face, name: viewer.info.materials[viewer.material(hit)] };
     });
     const close = async (/** @type {Awaited<ReturnType<typeof load>>} */ { server, page }) => {
@@ -65,9 +67,11 @@ describeInBrowsers('materials', (_, browser) => {
     const whole = await hits(page);
 
     // The front sphere is hidden by a click on it.
-    await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('materials'));
     await page.$$eval('.panel button', (all) => all.find((one) => one.textContent === 'Hide by clicking')?.click());
-    await page.evaluate(() => /** @type {any} */ (window).voxdag.hands.emit('click', 350, 60));
+    await page.evaluate(() => {
+      const { hands, viewer } = /** @type {any} */ (window).voxdag;
+      hands.emit('click', viewer.canvas.clientWidth / 2, 60);
+    });
     await page.waitForFunction('window.voxdag.viewer.get().hidden.join() === "0"');
     const behind = await pick(page);
     assert.equal(behind.name, 'back');
