@@ -6,7 +6,8 @@ import { LIGHT } from '../constants.js';
 import { CLEAR_LUMINANCE, environmentOf, mapAxes } from '../environment.js';
 import { lensOf } from '../lens.js';
 import { distance, dot, length, normalized, scale, sub } from '../math.js';
-import { interiorSun, sunOf } from '../sun.js';
+import { interiorSun } from '../sun.js';
+import { sunOf } from '../sunlight.js';
 
 /** @typedef {import('../settings.js').Camera} Camera */
 /** @typedef {import('../settings.js').Settings & {camera: Camera}} Settings */
