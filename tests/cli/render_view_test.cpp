@@ -36,6 +36,7 @@ std::vector<std::string> with_camera(std::vector<std::string> options) {
 
 TEST_F(RenderView, GivesThePictureOfTheOptions) {
   EXPECT_EQ(with_settings("{}"), picture({}));
+  EXPECT_EQ(with_settings(R"({"hidden": []})"), picture({}));
   EXPECT_EQ(with_settings(std::string("{") + kCamera + "}"), picture(kCameraOptions));
   EXPECT_EQ(with_settings(std::string("{") + kCamera +
                           R"(, "sun": {"direction": [1, 2, 3], "angle": 4}, "sky": 0.5,
@@ -163,13 +164,15 @@ TEST_F(RenderView, MaterialsWinOverTheFile) {
 
 TEST_F(RenderView, SettingsThatAPictureCannotShowAreNamed) {
   write_text(path("view.json"),
-             R"({"level": 3, "show": "steps", "bounces": 1, "occlusion": {"samples": 0}})");
+             R"({"level": 3, "show": "steps", "bounces": 1, "occlusion": {"samples": 0},
+             "hidden": [1]})");
   const ProcessResult result = run_voxdag({"render", path("in.vdag"), "-o", path("a.png"), "--size",
                                            "8x8", "-q", "--view", path("view.json")});
   EXPECT_EQ(result.status, 0);
   EXPECT_NE(result.err.find("\"level\" is ignored"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("\"show\" is ignored"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("\"bounces\" is ignored"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("\"hidden\" is ignored"), std::string::npos) << result.err;
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ export function lightPanel(ui) {
     get: (s) => s.ground, set: (value) => set({ ground: value }),
   });
   const followName = /** @type {HTMLElement} */ (follow.element.firstElementChild);
-  const noSun = h('p', { class: 'hint' }, 'This light has no sun of its own. Turn the switch off to add one.');
+  const noSun = h('p', { class: 'hint' }, 'This light has no sun. To add one, turn “Sun of the environment” off.');
   const refresh = refreshAll([on, follow, azimuth, elevation, angle, shadows, environment, turn, sky, bounced, samples, reach, exposure, tone, background, ground]);
   const place = h('div', {}, h('div', { class: 'center' }, dome.element), azimuth.element, elevation.element);
   const quality = h('div', {}, angle.element, shadows.element), sun = h('div', {}, place, follow.element, noSun, quality);

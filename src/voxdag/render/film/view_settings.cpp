@@ -56,6 +56,12 @@ class Reader {
           }},
          {"colors", [&](const Json& value) { settings_.colors = flag(value, "colors"); }},
          {"normals", [&](const Json& value) { settings_.normals = flag(value, "normals"); }},
+         {"hidden",
+          [&](const Json& value) {
+            each_element(value, "hidden",
+                         [&](auto& one, const auto& key) { whole(one, key, 0, 65534); });
+            if (!value.empty()) ignore("hidden", "a picture shows all materials");
+          }},
          {"show",
           [&](const Json& value) {
             if (value != "light") ignore("show", "a picture shows the light; --pass writes others");
