@@ -1,10 +1,21 @@
 /** Room for the picture, sizes of type and targets, names of icons, and numbers that are typed. */
 import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import path from 'node:path';
 import { after, before, it } from 'node:test';
 import { assertNoComplaints, describeInBrowsers, open } from './browser.mjs';
-import { build, view } from './program.mjs';
+import { build, folder, view, voxdag } from './program.mjs';
 
 const QUICK = '#ao=0&shadows=off';
+
+/** Builds two triangles of two materials, one of which has a name. Returns the file. @param {string} name */
+function buildMaterials(name) {
+  const mesh = path.join(folder, 'names.obj'), file = path.join(folder, 'names.vdag');
+  writeFileSync(path.join(folder, 'names.mtl'), `newmtl ${name}\nnewmtl Iron\n`);
+  writeFileSync(mesh, `mtllib names.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nusemtl ${name}\nf 1 2 3\nusemtl Iron\nf 2 3 4\n`);
+  voxdag('build', mesh, '-r', '32', '--material-ids', '-o', file, '-q');
+  return file;
+}
 
 describeInBrowsers('layout', (name, browser) => {
   /** @type {{url: string, close: () => Promise<void>}} */
@@ -35,6 +46,30 @@ describeInBrowsers('layout', (name, browser) => {
       assertNoComplaints(page);
       await page.close();
     }
+  });
+
+  it('shows every icon of the toolbar, large enough for a finger, on phones', async () => {
+    for (const [width, height] of [[844, 390], [390, 844], [360, 640]]) {
+      const page = await load(width, height);
+      await page.setViewport({ width, height, hasTouch: true, isMobile: name === 'chromium' });
+      const sizes = await page.$$eval('.toolbar button:not([hidden])', (buttons) => buttons.map((button) => {
+        const { left, top, right, bottom } = button.getBoundingClientRect();
+        return [left, top, innerWidth - right, innerHeight - bottom, right - left - 27, bottom - top - 27];
+      }));
+      assert.ok(sizes.length >= 10 && sizes.flat().every((x) => x >= 0), `${width}: ${JSON.stringify(sizes)}`);
+      await page.close();
+    }
+  });
+
+  it('keeps long names of materials in the panel, with their switches', async () => {
+    const own = await view(buildMaterials('Brick, weathered and partly painted over by an unknown hand')), page = await open(browser(), own.url + QUICK, { width: 844, height: 390, ready });
+    await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('materials'));
+    await page.waitForSelector('.materials input');
+    const [ends, room] = await page.evaluate(() => [
+      [...document.querySelectorAll('.materials input')].map((input) => input.getBoundingClientRect().right), document.querySelector('.materials')?.getBoundingClientRect().right ?? 0]);
+    assert.ok(ends.length > 0 && ends.every((x) => x <= room + 1), `${ends} in ${room}`);
+    await page.close();
+    await own.close();
   });
 
   it('has larger type and targets on larger screens', async () => {

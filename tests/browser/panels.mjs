@@ -9,7 +9,7 @@ import { view } from './program.mjs';
 
 const SIZES = [[1280, 800], [844, 390], [390, 844], [2560, 1440]];
 const [file, out, ...wanted] = process.argv.slice(2);
-const PANELS = wanted.length > 0 ? wanted : ['none', 'view', 'light', 'section', 'measure', 'notes', 'film', 'share', 'statistics', 'help'];
+const PANELS = wanted.length > 0 ? wanted : ['none', 'view', 'light', 'section', 'materials', 'measure', 'notes', 'film', 'compare', 'share', 'statistics', 'help'];
 const HASH = '#ao=0&shadows=off';
 
 fs.mkdirSync(out, { recursive: true });

@@ -70,6 +70,32 @@ TEST_F(ExportPage, AViewATitleAndAPosterAreBakedIn) {
   EXPECT_NE(read_text(dir_ / "site/index.html").find(R"("sky":2)"), std::string::npos);
 }
 
+TEST_F(ExportPage, AnEnvironmentIsBakedIn) {
+  const std::string view = dir_ / "view.json", page = dir_ / "a.html", light = dir_ / "light.hdr";
+  std::string sky = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n";
+  for (int i = 0; i < 8; ++i) sky += std::string("\x60\x70\x80\x81", 4);
+  write_text(light, sky);
+  write_text(view, R"({"sky": 2, "environment": {"map": "sunset", "turn": 30}})");
+  const auto exported = [&](const std::string& environment) {
+    EXPECT_EQ(run_voxdag({"export", small_, "-o", page, "-q", "--view", view, "--environment",
+                          environment, "--poster"})
+                  .status,
+              0);
+    return read_text(page);
+  };
+  EXPECT_NE(exported("studio").find(R"("environment":{"map":"studio","turn":30},"sky":2)"),
+            std::string::npos);
+  const std::string baked = exported(light);
+  EXPECT_NE(baked.find(R"("environment":{"map":{"name":"light.hdr","side":16,"sun":[0.0,0.0,0.0])"),
+            std::string::npos);
+  // 16² texels of the picture's bytes.
+  EXPECT_NE(baked.find(R"("texels":"YHCAgWBwgIFgcICB)"), std::string::npos);
+  expect_failure(run_voxdag({"export", small_, "-o", page, "--environment", dir_ / "no.hdr"}), 1,
+                 "no.hdr: cannot open");
+  expect_failure(run_voxdag({"export", small_, "-o", dir_ / "a.ply", "--environment", "studio"}), 2,
+                 "--environment");
+}
+
 TEST_F(ExportPage, AWrongViewIsRefused) {
   const std::string view = dir_ / "view.json";
   const auto expect_refused = [&](const std::string& json, const std::string& reason) {

@@ -36,6 +36,7 @@ std::vector<std::string> with_camera(std::vector<std::string> options) {
 
 TEST_F(RenderView, GivesThePictureOfTheOptions) {
   EXPECT_EQ(with_settings("{}"), picture({}));
+  EXPECT_EQ(with_settings(R"({"hidden": []})"), picture({}));
   EXPECT_EQ(with_settings(std::string("{") + kCamera + "}"), picture(kCameraOptions));
   EXPECT_EQ(with_settings(std::string("{") + kCamera +
                           R"(, "sun": {"direction": [1, 2, 3], "angle": 4}, "sky": 0.5,
@@ -71,6 +72,17 @@ TEST_F(RenderView, ASectionCutsThePicture) {
   refused("--section-box", "1,0,0,0,1,1", "second corner");
 }
 
+TEST_F(RenderView, LightsByAnEnvironment) {
+  EXPECT_EQ(with_settings(R"({"environment": {"map": "studio", "turn": 30}})"),
+            picture({"--environment", "studio", "--environment-turn", "30"}));
+  EXPECT_EQ(with_settings(R"({"environment": {"map": "studio", "turn": 30}})",
+                          {"--environment", "sunset"}),
+            picture({"--environment", "sunset", "--environment-turn", "30"}));
+  EXPECT_EQ(with_settings(R"({"bounces": 2, "occlusion": {"samples": 8}})"),
+            picture({"--bounces", "2", "--ao", "8"}));
+  EXPECT_EQ(with_settings(R"({"bounces": null, "environment": {"map": null}})"), picture({}));
+}
+
 TEST_F(RenderView, OptionsWinOverTheFile) {
   const std::string settings = std::string("{") + kCamera +
                                R"(, "sun": {"direction": [1, 2, 3], "angle": 4, "on": false},
@@ -92,6 +104,21 @@ TEST_F(RenderView, ErrorsNameFileAndKey) {
     EXPECT_FALSE(exists("no.png"));
   };
   refused(R"({"sky": true})", "\"sky\" is not a number");
+  refused(R"({"environment": {"map": "moon"}})",
+          "\"environment.map\" is none of studio, overcast, sunset and a map");
+  refused(R"({"environment": {"map": {"name": "a", "side": 2, "texels": "", "sun": [0, 0, 0]}}})",
+          "\"environment.map.towards\" is missing");
+  const auto refused_map = [&](const std::string& side, const std::string& texels,
+                               const std::string& text) {
+    refused(R"({"environment": {"map": {"name": "a", "towards": [0, 0, 0], "sun": [0, 0, 0],
+            "side": )" +
+                side + R"(, "texels": ")" + texels + "\"}}}",
+            text);
+  };
+  refused_map("2.5", "", "\"environment.map.side\" is no whole number from 2 to 512");
+  refused_map("2", "AAAA", "\"environment.map.texels\" is not the base64 of 16 bytes");
+  refused_map("2", "AAAAAAAAAAAAAAAAAAAAAA==", "the environment is black");
+  refused(R"({"bounces": 1.5})", "\"bounces\" is not a whole number");
   refused(R"({"section": {"box": {"low": [0, 0, 0]}}})", "\"section.box.high\" is missing");
   expect_failure(
       run_voxdag({"render", path("in.vdag"), "-o", path("no.png"), "--view", path("none.json")}), 1,
@@ -136,12 +163,16 @@ TEST_F(RenderView, MaterialsWinOverTheFile) {
 }
 
 TEST_F(RenderView, SettingsThatAPictureCannotShowAreNamed) {
-  write_text(path("view.json"), R"({"level": 3, "show": "steps"})");
+  write_text(path("view.json"),
+             R"({"level": 3, "show": "steps", "bounces": 1, "occlusion": {"samples": 0},
+             "hidden": [1]})");
   const ProcessResult result = run_voxdag({"render", path("in.vdag"), "-o", path("a.png"), "--size",
                                            "8x8", "-q", "--view", path("view.json")});
   EXPECT_EQ(result.status, 0);
   EXPECT_NE(result.err.find("\"level\" is ignored"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("\"show\" is ignored"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("\"bounces\" is ignored"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("\"hidden\" is ignored"), std::string::npos) << result.err;
 }
 
 }  // namespace

@@ -104,6 +104,40 @@ TEST(Environment, AnUpVectorAndATurnMoveThePicture) {
   EXPECT_FALSE(is_bright({0, 1, 0}, 90, {0, 0, -1}));
 }
 
+TEST(Environment, KeepsItsLightWhenItIsPacked) {
+  std::mt19937 rng(3);
+  const Vec3f towards = normalized(Vec3f{0.3f, 0.8f, -0.5f});
+  const Environment environment(512, [&](Vec3f d) {
+    return dot(d, towards) > 0.9995f ? Vec3f{1000, 900, 800} : smooth_light(d);
+  });
+  const Environment packed(environment.packed(128));
+  EXPECT_EQ(packed.sun_irradiance(), environment.sun_irradiance());
+  EXPECT_EQ(packed.sun_direction(), environment.sun_direction());
+  EXPECT_NEAR(packed.mean_luminance() / environment.mean_luminance(), 1, 0.005);
+  const SkyMap before = environment.map({0, 1, 0}), after = packed.map({0, 1, 0});
+  EXPECT_EQ(after.side, 128);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3f d = random_unit(rng);
+    const Vec3f ambient = map_ambient(before, d), again = map_ambient(after, d);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(again[c] / ambient[c], 1, 0.01);
+      // Bytes round to 1/256 of the brightest colour. Texels at the sun's edge have a part of it.
+      if (dot(d, towards) < 0.99f) EXPECT_NEAR(map_radiance(after, d)[c], smooth_light(d)[c], 0.03);
+    }
+  }
+}
+
+TEST(Environment, PacksEveryBrightness) {
+  for (const float light : {1e-30f, 1e-3f, 0.998f, 255.9f, 65504.0f}) {
+    const Environment environment(16, [&](Vec3f) { return Vec3f{light, light / 2, 0}; });
+    const Environment packed(environment.packed(16));
+    const Vec3f seen = map_radiance(packed.map({0, 1, 0}), {1, 0, 0});
+    EXPECT_NEAR(seen.x / light, 1, 1.0 / 128);
+    EXPECT_NEAR(seen.y / light, 0.5, 1.0 / 128);
+    EXPECT_EQ(seen.z, 0);
+  }
+}
+
 TEST(Environment, RefusesAPictureThatIsBlackOrNotOfAllDirections) {
   EXPECT_EQ(reason_of([] { const Environment environment(ImageF(30, 20, 3)); }),
             "an environment must be twice as wide as high (equirectangular), not 30 x 20");

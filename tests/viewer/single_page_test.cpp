@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/error_of.hpp"
-#include "viewer/site/base64.hpp"
+#include "voxdag/core/io/base64.hpp"
 #include "voxdag/core/error.hpp"
 
 namespace voxdag {

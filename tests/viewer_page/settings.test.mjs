@@ -22,6 +22,7 @@ function randomSettings(seed) {
   return mergeSettings(DEFAULTS, {
     camera: maybe(camera),
     sun: { direction: maybe(() => vector(1)), angle: random() * 5, on: random() < 0.5 },
+    environment: { map: maybe(() => pick(['studio', 'overcast', 'sunset'])), turn: random() * 360 - 180 }, bounces: maybe(() => Math.floor(random() * 5)),
     sky: random() * 3, exposure: random() * 4, shadows: random() < 0.5,
     tone: pick(TONES), background: pick(BACKGROUNDS), ground: random() < 0.5,
     occlusion: { samples: Math.floor(random() * 256), distance: random() * scale, cone: random() },
@@ -61,6 +62,20 @@ test('a hash holds what differs from the settings of the page, and nothing else'
     assert.deepEqual(read.settings, settings);
     assert.deepEqual(settingsFromHash(settingsToHash(DEFAULTS, null, base), base).settings, DEFAULTS);
   }
+});
+
+test('settings hold the map of an environment, which a link only holds if the page begins with it', () => {
+  const map = { name: 'a.hdr', side: 2, texels: btoa('\x80\x80\x80\x81'.repeat(4)), sun: [1, 2, 3], towards: [0, 1, 0] };
+  const own = mergeSettings(DEFAULTS, { environment: { map } });
+  assert.deepEqual(settingsFromJson(settingsToJson(own)), own);
+  assert.equal(settingsToHash(own, null, own), '');
+  assert.equal(settingsToHash(own), '');
+  assert.equal(settingsToHash(DEFAULTS, null, own), 'environment=none');
+  const refused = (changes, message) => assert.throws(() => mergeSettings(DEFAULTS, { environment: { map: { ...map, ...changes } } }), { message });
+  refused({ side: 3 }, '"environment.map.texels" is not the base64 of 36 bytes');
+  refused({ texels: '*'.repeat(24) }, '"environment.map.texels" is not the base64 of 16 bytes');
+  refused({ sun: [-1, 0, 0] }, '"environment.map.sun" is negative');
+  assert.throws(() => mergeSettings(DEFAULTS, { environment: { map: 'moon' } }), { message: '"environment.map" is not one of studio, overcast, sunset' });
 });
 
 test('measures of older files and links are distances', () => {

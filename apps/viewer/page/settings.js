@@ -2,6 +2,7 @@
  * The settings of a view: their defaults, their checks, and their form as JSON, which
  * `voxdag render --view` reads too. settings_link.js writes them as a link.
  */
+import { BUILT_IN } from './environment_skies.js';
 import { cross, length, normalized, sub } from './math.js';
 
 /**
@@ -22,6 +23,8 @@ import { cross, length, normalized, sub } from './math.js';
  * @property {Camera | null} camera  Null: the view that the scene suggests.
  * @property {{direction: Vec3 | null, angle: number, on: boolean}} sun  Null: see sunDirection().
  * @property {number} sky  Factor on the light of the sky.
+ * @property {{map: import('./environment.js').EnvironmentMap | null, turn: number}} environment  Null: the clear sky; degrees to the left.
+ * @property {number | null} bounces  How often light is reflected; null: not at all, but surfaces occlude each other.
  * @property {number} exposure  Factor before tone mapping; 0: automatic.
  * @property {'neutral' | 'agx' | 'filmic'} tone  Curve of the tone mapping.
  * @property {'sky' | 'grey' | 'white' | 'black'} background
@@ -68,6 +71,8 @@ export const DEFAULTS = {
   camera: null,
   sun: { direction: null, angle: 0.53, on: true },
   sky: 1,
+  environment: { map: null, turn: 0 },
+  bounces: null,
   exposure: 0,
   tone: 'neutral',
   background: 'sky',
@@ -248,12 +253,26 @@ const path = (value, key, _, ignored) => {
   return keys;
 };
 
+/** The side of an environment's map, at most. */
+const MOST_MAP_SIDE = 512;
+
+/** Checks an environment: the name of a built-in one, or a map. @type {Check} */
+const environmentMap = (value, key, _, ignored) => {
+  if (typeof value === 'string') return oneOf(Object.keys(BUILT_IN))(value, key, null, ignored);
+  const map = whole({ name: text(200), side: integer(2, MOST_MAP_SIDE), texels: text(MOST_MAP_SIDE ** 2 * 6), sun: vector, towards: vector })(value, key, null, ignored);
+  const bytes = 4 * map.side ** 2;
+  if (!/^[A-Za-z0-9+/]*={0,2}$/.test(map.texels) || map.texels.length !== 4 * Math.ceil(bytes / 3)) refuse(`${key}.texels`, `is not the base64 of ${bytes} bytes`);
+  return map.sun.some((/** @type {number} */ x) => x < 0) ? refuse(`${key}.sun`, 'is negative') : map;
+};
+
 /** @type {Check} */
 const settingsCheck = record({
   version: (value) => (value === 1 ? 1 : refuse('version', `is ${value}; this viewer reads version 1`)),
   camera: orNull(record(cameraFields, cameraDefaults, checkView)),
   sun: record({ direction: orNull(direction), angle: number(0, 89), on: boolean }),
   sky: number(0, 1000),
+  environment: record({ map: orNull(environmentMap), turn: number(-360, 360) }),
+  bounces: orNull(integer(0, 64)),
   exposure: number(0, 1e6),
   tone: oneOf(TONES),
   background: oneOf(BACKGROUNDS),

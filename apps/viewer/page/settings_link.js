@@ -19,8 +19,8 @@ const toNumber = (value) => (value.trim() === '' ? NaN : Number(value));
 const toVector = (value) => /** @type {any} */ (value.split(',').map(toNumber));
 
 /**
- * How values of one kind are written and read.
- * @typedef {{write: (value: any) => string | number, read: (text: string) => any}} Kind
+ * How values of one kind are written and read; null: a link cannot hold the value.
+ * @typedef {{write: (value: any) => string | number | null, read: (text: string) => any}} Kind
  */
 /** @type {{[name: string]: Kind}} */
 const KINDS = {
@@ -30,6 +30,8 @@ const KINDS = {
   text: { write: (value) => value, read: (text) => text },
   free: { write: encodeURIComponent, read: decodeURIComponent },
   name: { write: (value) => value ?? 'none', read: (text) => (text === 'none' ? null : text) },
+  /** An environment: a link has no room for a map that the page does not begin with. */
+  map: { write: (map) => (typeof map === 'string' || map === null ? map ?? 'none' : null), read: (text) => (text === 'none' ? null : text) },
   onOff: { write: (on) => (on ? 'on' : 'off'), read: (text) => (text === 'on' ? true : text === 'off' ? false : text) },
   vector: { write: (v) => (v ? words(v) : 'none'), read: (text) => (text === 'none' ? null : toVector(text)) },
 };
@@ -45,6 +47,9 @@ const SIMPLE = [
   ['sunlight', KINDS.onOff, 'sun', 'on'],
   ['angle', KINDS.number, 'sun', 'angle'],
   ['sky', KINDS.number, 'sky'],
+  ['environment', KINDS.map, 'environment', 'map'],
+  ['turn', KINDS.number, 'environment', 'turn'],
+  ['bounces', KINDS.optional, 'bounces'],
   ['exposure', KINDS.number, 'exposure'],
   ['tone', KINDS.text, 'tone'],
   ['background', KINDS.text, 'background'],
@@ -79,11 +84,12 @@ export function settingsToHash(settings, home = null, base = DEFAULTS) {
   const { camera, section } = settings;
   if (camera ? !sameCamera(camera, base.camera ?? home) : base.camera) {
     if (!camera || sameCamera(camera, home)) put('eye', 'home');
-    else for (const [key, kind] of CAMERA) put(key, kind.write(camera[key]));
+    else for (const [key, kind] of CAMERA) put(key, /** @type {string} */ (kind.write(camera[key])));
   }
   for (const [key, kind, ...place] of SIMPLE) {
     const value = valueAt(settings, ...place);
-    if (!same(value, valueAt(base, ...place))) put(key, kind.write(value));
+    const written = same(value, valueAt(base, ...place)) ? null : kind.write(value);
+    if (written !== null) put(key, written);
   }
   if (!same(settings.hidden, base.hidden)) put('hidden', settings.hidden.length ? settings.hidden.join(',') : 'none');
   const { box, plane } = section;

@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "viewer/gzip/gzip.hpp"
-#include "viewer/site/base64.hpp"
+#include "voxdag/core/io/base64.hpp"
 #include "viewer/site/scene_pieces.hpp"
 #include "viewer/site/single_page.hpp"
 #include "voxdag/core/error.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "viewer/site/base64.hpp"
+#include "voxdag/core/io/base64.hpp"
 #include "viewer/site/module_imports.hpp"
 #include "voxdag/core/error.hpp"
 

@@ -258,7 +258,8 @@ void add_export_command(const Command& program, Session& session) {
   add_json_option(command, session);
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
-    session.inputs = {arguments->look, arguments->page_view.file};
+    session.inputs = {arguments->look};
+    note_page_view_files(arguments->page_view, session);
     check_outputs(*arguments, session);
     session.work = [arguments, &session] {
       work_on_scene(arguments->input, session, [&] { export_file(*arguments, session); });

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cli/environment_input.hpp"
 #include "cli/output_files.hpp"
-#include "voxdag/image/light_image.hpp"
 #include "voxdag/render/film/camera_file.hpp"
 #include "voxdag/render/film/frame_names.hpp"
 #include "voxdag/render/film/view_settings.hpp"
@@ -69,8 +69,7 @@ void check_view(const ViewRequest& view) {
 void check_render_arguments(RenderArguments& arguments, Session& session) {
   session.inputs = {arguments.mesh.file, arguments.path.file, arguments.look, arguments.view.file,
                     arguments.camera_matrix};
-  if (!is_built_in_environment(arguments.environment))
-    session.inputs.push_back(arguments.environment);
+  note_environment_file(arguments.environment, session);
   if (arguments.mesh.primary == "mesh" && arguments.mesh.file.empty())
     throw UsageError("--primary", "\"mesh\" needs --mesh");
   arguments.mesh.access.outputs = check_outputs(arguments, session);
@@ -83,15 +82,7 @@ void check_render_arguments(RenderArguments& arguments, Session& session) {
 
 void read_render_files(RenderArguments& arguments) {
   RenderOptions& options = arguments.options;
-  const std::string& environment = arguments.environment;
-  try {
-    if (is_built_in_environment(environment))
-      options.environment = std::make_shared<Environment>(built_in_environment(environment));
-    else if (!environment.empty())
-      options.environment = std::make_shared<Environment>(read_light_image(environment));
-  } catch (const Error& error) {
-    throw error.in_file(environment);
-  }
+  if (!arguments.environment.empty()) options.environment = read_environment(arguments.environment);
   if (arguments.camera_matrix.empty()) return;
   const ViewRequest camera = read_camera_file(arguments.camera_matrix);
   options.view.eye = camera.eye;
@@ -128,6 +119,9 @@ void apply_view_file(RenderArguments& arguments, Session& session) {
   if (!view.has("--sun") && !view.has("--sun-angle"))
     take("--no-sun", options.with_sun, saved.with_sun);
   take("--sky", options.sky, saved.sky);
+  options.environment = saved.environment;  // --environment, which is read later, wins.
+  take("--environment-turn", options.environment_degrees, saved.environment_degrees);
+  take("--bounces", options.bounces, saved.bounces);
   take("--no-shadows", options.shadows, saved.shadows);
   take("--exposure", options.exposure, saved.exposure);
   take("--tone", options.tone, saved.tone);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "cli/environment_input.hpp"
 #include "cli/look_input.hpp"
 #include "cli/parse.hpp"
 #include "render/render_arguments.hpp"
@@ -153,14 +154,18 @@ void add_light_options(const Command& command, RenderArguments& arguments, Winne
       "15 times");
   winners.push_back(command.number("--sky", options.sky, NumberRange::from(0, RenderLimits::kSky),
                                    "FACTOR", "Factor that scales the light of the sky; 0: black"));
-  const Option environment = command.text(
-      "--environment", arguments.environment, "FILE|NAME",
-      "Light the scene by this picture of all directions instead of the clear sky: an "
-      "equirectangular .hdr or .exr file, or studio, overcast or sunset. Its sun casts shadows");
-  command
-      .number("--environment-turn", options.environment_degrees, NumberRange::from(-360, 360),
-              "DEGREES", "Turn the environment to the left")
-      .needs(environment);
+  add_environment_option(command, arguments.environment,
+                         "Light the scene by this picture of all directions, whose sun casts "
+                         "shadows, instead of the clear sky");
+  winners.push_back(command
+                        .number("--environment-turn", options.environment_degrees,
+                                NumberRange::from(-360, 360), "DEGREES",
+                                "Turn the environment to the left")
+                        .only_if(
+                            [&arguments] {
+                              return !arguments.environment.empty() || !arguments.view.file.empty();
+                            },
+                            "without --environment"));
   const auto has_lights = [&options] { return options.with_sun || !options.lights.empty(); };
   winners.push_back(command
                         .off_switch("--no-shadows", options.shadows,
@@ -197,13 +202,14 @@ void add_occlusion_options(const Command& command, RenderOptions& options, Winne
               "End ambient occlusion rays at cells of this solid angle, such as 0.07: darker, and "
               "faster on rough surfaces; 0: never")
           .only_if(has_occlusion, "with --ao 0"));
-  command
-      .optional_number<int>(
-          "--bounces", options.bounces, NumberRange::whole(0, RenderLimits::kBounces), "N",
-          "Trace paths instead of ambient occlusion: exact light of the sky and of "
-          "up to N reflections, with --ao paths per pixel; grainy below some "
-          "thousand paths")
-      .only_if(has_occlusion, "with --ao 0");
+  winners.push_back(
+      command
+          .optional_number<int>(
+              "--bounces", options.bounces, NumberRange::whole(0, RenderLimits::kBounces), "N",
+              "Trace paths instead of ambient occlusion: exact light of the sky and of "
+              "up to N reflections, with --ao paths per pixel; grainy below some "
+              "thousand paths")
+          .only_if(has_occlusion, "with --ao 0"));
 }
 
 void add_quality_options(const Command& command, RenderOptions& options, Winners& winners) {

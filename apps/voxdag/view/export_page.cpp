@@ -40,7 +40,7 @@ void export_page(const std::string& output, const ShownSceneArguments& arguments
   PageView view = read_page_view(shown);
   const ShownScene scene =
       ShownScene::read(session.subject, arguments, AttributeForm::kWire, session);
-  if (shown.poster) view.poster = render_poster(shown, scene, &session.progress);
+  if (shown.poster) view.poster = render_poster(view, scene, &session.progress);
   const BakedPage page(view);
   const std::uint64_t bytes =
       is_single_file(output)

@@ -1,10 +1,13 @@
 #include "view/page_view.hpp"
 
-#include "viewer/site/base64.hpp"
+#include <filesystem>
+
+#include "cli/environment_input.hpp"
+#include "voxdag/core/io/base64.hpp"
 #include "voxdag/cpu/presentation.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/image/jpeg_writer.hpp"
-#include "voxdag/render/film/json_file.hpp"
+#include "voxdag/render/film/environment_json.hpp"
 #include "voxdag/render/film/picture_pass.hpp"
 #include "voxdag/render/film/view_settings.hpp"
 
@@ -21,7 +24,15 @@ std::vector<Option> add_page_view_options(const Command& command, PageViewArgume
                        "What the page shows first: camera, light, section, measures, notes, title "
                        "and licence. The page saves this file; docs/viewer.md lists its keys"),
           command.text("--title", arguments.title, "TEXT",
-                       "Title of the page (default: that of --view, else the name of the scene)")};
+                       "Title of the page (default: that of --view, else the name of the scene)"),
+          add_environment_option(command, arguments.environment,
+                                 "Light the scene by this picture of all directions, which the "
+                                 "page then holds, instead of the clear sky")};
+}
+
+void note_page_view_files(const PageViewArguments& arguments, Session& session) {
+  session.inputs.push_back(arguments.file);
+  note_environment_file(arguments.environment, session);
 }
 
 PageView read_page_view(const PageViewArguments& arguments) {
@@ -35,15 +46,19 @@ PageView read_page_view(const PageViewArguments& arguments) {
     view.title = settings.title;
   }
   if (!arguments.title.empty()) json["title"] = view.title = arguments.title;
-  if (!arguments.file.empty() || !arguments.title.empty()) view.settings = json.dump();
+  const std::string& environment = arguments.environment;
+  if (is_built_in_environment(environment))
+    json["environment"]["map"] = environment;
+  else if (!environment.empty())
+    json["environment"]["map"] = environment_json(
+        *read_environment(environment), std::filesystem::path(environment).filename().string());
+  if (json.size() > 1) view.settings = json.dump();
   return view;
 }
 
-std::string render_poster(const PageViewArguments& arguments, const ShownScene& scene, Work work) {
+std::string render_poster(const PageView& view, const ShownScene& scene, Work work) {
   const ReducedDag& dag = scene.dag();
-  ViewSettings settings;
-  settings.options.ground = true;
-  if (!arguments.file.empty()) settings = read_view_settings(arguments.file);
+  ViewSettings settings = parse_view_settings(view.settings.empty() ? "{}" : view.settings, "view");
   RenderOptions& options = settings.options;
   options.width = kPosterWidth;
   options.height = kPosterHeight;

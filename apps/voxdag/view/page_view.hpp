@@ -1,5 +1,5 @@
 #pragma once
-/// The options of a page's first view: `--view`, `--title` and `--poster`.
+/// The options of a page's first view: `--view`, `--title`, `--environment` and `--poster`.
 #include <string>
 #include <vector>
 
@@ -10,19 +10,22 @@
 namespace voxdag::cli {
 
 struct PageViewArguments {
-  std::string file, title;
+  std::string file, title, environment;
   bool poster = false;
 };
 
-/// Adds --view and --title. Returns them.
+/// Adds --view, --title and --environment. Returns them.
 std::vector<Option> add_page_view_options(const Command& command, PageViewArguments& arguments);
 
-/// Reads the settings of --view. Throws Error, which names the file and the key, for a value that
-/// the page could not use, and for an unknown key.
+/// Adds the files that the options name to session.inputs.
+void note_page_view_files(const PageViewArguments& arguments, Session& session);
+
+/// Reads the settings of --view and the environment. Throws Error, which names the file and the
+/// key, for a value that the page could not use, and for an unknown key.
 PageView read_page_view(const PageViewArguments& arguments);
 
-/// Renders the picture of --poster, as a data URL of a JPEG of some 20 KB. `scene` comes from
+/// Renders the first view, as a data URL of a JPEG of some 20 KB. `scene` comes from
 /// ShownScene::read(). Throws what render_image() throws.
-std::string render_poster(const PageViewArguments& arguments, const ShownScene& scene, Work work);
+std::string render_poster(const PageView& view, const ShownScene& scene, Work work);
 
 }  // namespace voxdag::cli

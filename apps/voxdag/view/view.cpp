@@ -33,6 +33,7 @@ void add_view_command(const Command& program, Session& session) {
       "voxdag view scene.vdag\n"
       "  voxdag view scene.vdag --port 8080 --no-open\n"
       "  voxdag view scene.vdag --view scene.settings.json\n"
+      "  voxdag view scene.vdag --environment studio\n"
       "  voxdag view castle.vox\n"
       "  voxdag view sponza.obj -r 4096 --keep sponza.vdag\n\n"
       "Starts a server, prints the address of the page as one line on stdout, and opens "
@@ -56,7 +57,7 @@ void add_view_command(const Command& program, Session& session) {
                  "quarters of the available memory)");
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
-    session.inputs = {arguments->page_view.file};
+    note_page_view_files(arguments->page_view, session);
     session.work = [arguments, &session] {
       require_page_server();
       work_on_scene(arguments->input, session, [&] { view(*arguments, session); });

@@ -13,6 +13,11 @@ namespace voxdag {
 namespace {
 
 constexpr int kMostSide = 2048, kBuiltInSide = 256;
+constexpr int kExponentBias = 128;  // of packed texels
+
+std::size_t texel_count(int side) {
+  return static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+}
 
 /// Returns the direction at a place of [-1,1]² of the octahedral map, of unit length, and the solid
 /// angle there per area of the map.
@@ -71,8 +76,54 @@ Environment::Environment(const ImageF& picture)
         return equirectangular(picture, static_cast<Vec3d>(direction));
       }) {}
 
-Environment::Environment(int side, const std::function<Vec3f(Vec3f)>& radiance)
-    : side_(side), texels_(static_cast<std::size_t>(side) * static_cast<std::size_t>(side)) {
+Environment::Environment(int side, const std::function<Vec3f(Vec3f)>& radiance) : side_(side) {
+  sample(radiance);
+  take_sun_out();
+  find_light();
+}
+
+Environment::Environment(const PackedEnvironment& packed)
+    : side_(packed.side),
+      sun_irradiance_(packed.sun_irradiance),
+      sun_direction_(packed.sun_direction) {
+  const std::string& bytes = packed.texels;
+  assert(bytes.size() == 4 * texel_count(side_));
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  for (std::size_t at = 0; at < bytes.size(); at += 4) {
+    const float unit = std::ldexp(1.0f, byte(at + 3) - kExponentBias - 8);
+    texels_.push_back(Vec3f{static_cast<float>(byte(at)), static_cast<float>(byte(at + 1)),
+                            static_cast<float>(byte(at + 2))} *
+                      unit);
+  }
+  find_light();
+}
+
+PackedEnvironment Environment::packed(int most_side) const {
+  const Environment* from = this;
+  Environment smaller;
+  if (side_ > most_side) {
+    smaller.side_ = most_side;
+    smaller.sample([&](Vec3f direction) { return map_radiance(light_, direction); });
+    from = &smaller;
+  }
+  PackedEnvironment packed{from->side_, {}, sun_irradiance_, sun_direction_};
+  for (const Vec3f texel : from->texels_) {
+    const float most = std::max({texel.x, texel.y, texel.z});
+    int exponent = 0;
+    std::frexp(most, &exponent);
+    exponent = std::clamp(exponent, -kExponentBias, 255 - kExponentBias);
+    // Rounding must not carry the largest part to 256.
+    if (std::lround(std::ldexp(most, 8 - exponent)) > 255) ++exponent;
+    for (int c = 0; c < 3; ++c)
+      packed.texels += static_cast<char>(std::lround(std::ldexp(texel[c], 8 - exponent)));
+    packed.texels += static_cast<char>(exponent + kExponentBias);
+  }
+  return packed;
+}
+
+void Environment::sample(const std::function<Vec3f(Vec3f)>& radiance) {
+  const int side = side_;
+  texels_.resize(texel_count(side));
   // Four by four samples a texel, so that a small sun keeps its light.
   constexpr int kSamples = 4;
   parallel_for(static_cast<std::size_t>(side), [&](std::size_t row) {
@@ -88,10 +139,6 @@ Environment::Environment(int side, const std::function<Vec3f(Vec3f)>& radiance)
           sum * (1.0f / (kSamples * kSamples));
     }
   });
-  take_sun_out();
-  find_harmonics();
-  light_.texels = texels_.data();
-  light_.side = side;
 }
 
 void Environment::take_sun_out() {
@@ -124,17 +171,15 @@ void Environment::take_sun_out() {
     towards = towards + place.direction * static_cast<double>(luminance(static_cast<Vec3f>(given)));
   });
   const double given = static_cast<double>(luminance(static_cast<Vec3f>(light)));
-  mean_luminance_ = static_cast<float>(mean);
   if (given < kLeast * (sum - given)) return;
   for_texels(side_, [&](const MapPlace& place, std::size_t i) {
     texels_[i] = texels_[i] * static_cast<float>(1 - part_of_sun(place, i));
   });
   sun_irradiance_ = static_cast<Vec3f>(light);
   sun_direction_ = static_cast<Vec3f>(normalized(towards));
-  mean_luminance_ = static_cast<float>((sum - given) / (4 * std::numbers::pi));
 }
 
-void Environment::find_harmonics() {
+void Environment::find_light() {
   const double area = 4.0 / (static_cast<double>(side_) * side_);
   const auto basis = [](Vec3d d) {
     return std::array{1.0,
@@ -161,6 +206,10 @@ void Environment::find_harmonics() {
   });
   for (std::size_t k = 0; k < 9; ++k)
     light_.harmonics[k] = static_cast<Vec3f>(sums[k] * kFactors[k]);
+  mean_luminance_ = luminance(light_.harmonics[0]);
+  if (!(mean_luminance_ > 0)) throw Error("the environment is black");
+  light_.texels = texels_.data();
+  light_.side = side_;
 }
 
 SkyMap Environment::map(Vec3f up, double degrees) const {

@@ -9,6 +9,7 @@
 /// Environment Maps", SIGGRAPH 2001. The sun is taken out of the picture and becomes a light, so
 /// that it casts shadows.
 #include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +17,17 @@
 #include "voxdag/render/sky.hpp"
 
 namespace voxdag {
+
+/// An environment as the settings of a view hold it.
+struct PackedEnvironment {
+  static constexpr int kMostSide = 512;
+
+  int side = 0;  ///< Of the octahedral map: even, 2 to kMostSide.
+  /// side² texels without the sun, row by row, of 4 bytes: red, green and blue, and the exponent
+  /// that they share, as in a Radiance HDR file.
+  std::string texels;
+  Vec3f sun_irradiance{}, sun_direction{};  ///< As those of Environment.
+};
 
 /// A light from all directions. Its own axes: y is up, and -z is the middle of the picture. Units
 /// of radiance are the file's.
@@ -27,6 +39,11 @@ class Environment {
   explicit Environment(const ImageF& picture);
   /// Samples radiance(direction) at side² directions of unit length. Throws Error if it is black.
   Environment(int side, const std::function<Vec3f(Vec3f)>& radiance);
+  /// Unpacks an environment whose side and number of bytes are right. Throws Error if it is black.
+  explicit Environment(const PackedEnvironment& packed);
+
+  /// Returns the environment with a map of at most most_side² texels.
+  PackedEnvironment packed(int most_side) const;
 
   /// Returns the light that the sun's part of the picture gives a surface that faces it, and the
   /// direction towards it; zero if there is no sun. A sun is what is more than 20 times as bright
@@ -44,10 +61,13 @@ class Environment {
   SkyMap map(Vec3f up, double degrees = 0) const;
 
  private:
+  Environment() = default;
+  /// Sets the texels to the means of radiance(direction) over each of them.
+  void sample(const std::function<Vec3f(Vec3f)>& radiance);
   void take_sun_out();
-  void find_harmonics();
+  void find_light();
 
-  int side_;
+  int side_ = 0;
   std::vector<Vec3f> texels_;
   SkyMap light_;
   Vec3f sun_irradiance_{}, sun_direction_{};

@@ -3,9 +3,11 @@
  * light.cpp and render_plan.cpp. Lengths are in units of the grid's side.
  */
 import { LIGHT } from '../constants.js';
+import { CLEAR_LUMINANCE, environmentOf, mapAxes } from '../environment.js';
 import { lensOf } from '../lens.js';
 import { distance, dot, length, normalized, scale, sub } from '../math.js';
-import { interiorSun, sunDirection } from '../sun.js';
+import { interiorSun } from '../sun.js';
+import { sunOf } from '../sunlight.js';
 
 /** @typedef {import('../settings.js').Camera} Camera */
 /** @typedef {import('../settings.js').Settings & {camera: Camera}} Settings */
@@ -26,22 +28,29 @@ export function cameraUniforms(place, camera, width, height) {
   };
 }
 
-/** Returns the uniforms of light.glsl that settings and camera determine. @param {Place} place @param {Settings} settings */
+/** Returns the uniforms of sky.glsl. @param {Place} place @param {Settings} settings */
+export function skyUniforms(place, settings) {
+  const { environment: { map, turn }, sky } = settings, up = normalized(settings.camera.up, [0, 1, 0]);
+  const environment = environmentOf(map), [right, , back] = mapAxes(up, turn), { direction, light } = sunOf(place, settings);
+  return {
+    u_sun: direction, u_sun_light: light,
+    u_zenith: LIGHT.zenith.map((x) => x * sky), u_horizon: LIGHT.horizon.map((x) => x * sky), u_ground: LIGHT.ground.map((x) => x * sky),
+    u_sky_up: up, u_map_right: right, u_map_back: back, u_map_scale: sky,
+    u_harmonics: environment ? environment.harmonics.flatMap((h) => scale(h, sky)) : Array(27).fill(0),
+    u_sky_exposure: environment ? CLEAR_LUMINANCE / environment.luminance : 1,
+  };
+}
+
+/** Returns the uniforms of shade.glsl and light.glsl that settings and camera determine. @param {Place} place @param {Settings} settings */
 export function lightUniforms(place, settings) {
-  const { camera, occlusion } = settings;
-  const inside = interiorSun(place, camera);
-  const sun = sunDirection(settings.sun.direction ?? inside, camera, LIGHT.defaultSun);
+  const { camera, occlusion } = settings, inside = interiorSun(place, camera), sun = sunOf(place, settings).direction;
   const sign = sun[2] < 0 ? -1 : 1;
   const a = -1 / (sign + sun[2]), b = sun[0] * sun[1] * a;
   const radius = Math.tan((settings.sun.angle * Math.PI) / 360);
   return {
-    u_sun: sun,
     u_sun_u: scale([1 + sign * sun[0] * sun[0] * a, sign * b, -sign * sun[0]], radius),
     u_sun_v: scale([b, sign + sun[1] * sun[1] * a, -sun[1]], radius),
-    u_sun_light: settings.sun.on ? LIGHT.sunLight : [0, 0, 0],
-    u_zenith: LIGHT.zenith.map((x) => x * settings.sky), u_horizon: LIGHT.horizon.map((x) => x * settings.sky),
-    u_ground: LIGHT.ground.map((x) => x * settings.sky),
-    u_sky_up: normalized(camera.up, [0, 1, 0]), u_fill: lensOf(camera, 1).right,
+    u_fill: lensOf(camera, 1).right,
     u_albedo: LIGHT.albedo,
     u_occlusion_distance: occlusion.distance > 0 ? occlusion.distance / place.side : inside ? LIGHT.interiorOcclusion : LIGHT.occlusionDistance,
     u_occlusion_cone: Math.sqrt(occlusion.cone),

@@ -45,7 +45,7 @@ export class Program {
     return place;
   }
 
-  /** Sets float uniforms: numbers, or vectors of 2 to 4. @param {{[name: string]: number | readonly number[]}} values */
+  /** Sets float uniforms: numbers, vectors of 2 to 4, or arrays of vectors of 3, number by number. @param {{[name: string]: number | readonly number[]}} values */
   floats(values) {
     const { gl } = this;
     for (const [name, value] of Object.entries(values)) {
@@ -54,7 +54,8 @@ export class Program {
       if (typeof value === 'number') gl.uniform1f(place, value);
       else if (value.length === 2) gl.uniform2f(place, value[0], value[1]);
       else if (value.length === 3) gl.uniform3f(place, value[0], value[1], value[2]);
-      else gl.uniform4f(place, value[0], value[1], value[2], value[3]);
+      else if (value.length === 4) gl.uniform4f(place, value[0], value[1], value[2], value[3]);
+      else gl.uniform3fv(place, value);
     }
   }
 

@@ -51,47 +51,42 @@ function sobol(index) {
 }
 
 /**
- * Calls body(at, u) for all points of all sets; point i of set s is at s * count + i, u has three
- * numbers in (0,1).
- * @param {number} count @param {number} seed @param {(at: number, u: number[]) => void} body
+ * Calls body(set, i, u) for all points of all sets; u has three numbers in (0,1).
+ * @param {number} count @param {number} seed @param {(set: number, i: number, u: number[]) => void} body
  */
 function forEachPoint(count, seed, body) {
   for (let set = 0; set < SAMPLES.sets; ++set) {
     const setSeed = hashBits(seed + set);
     const seeds = [1, 2, 3].map((axis) => hashBits((setSeed + 7919 * axis) | 0));
     for (let i = 0; i < count; ++i)
-      body(set * count + i, sobol(i).map((bits, axis) => ((scramble(bits, seeds[axis]) >>> 8) + 0.5) * 2 ** -24));
+      body(set, i, sobol(i).map((bits, axis) => ((scramble(bits, seeds[axis]) >>> 8) + 0.5) * 2 ** -24));
   }
 }
 
-/** Returns points in the unit disc, two numbers each. @param {number} count per set */
-export function discSamples(count) {
-  const points = new Float32Array(2 * SAMPLES.sets * count);
-  forEachPoint(count, 1, (at, u) => {
-    const r = Math.sqrt(u[0]), angle = 2 * Math.PI * u[1];
-    points.set([r * Math.cos(angle), r * Math.sin(angle)], 2 * at);
-  });
-  return points;
-}
+/** Columns of the table that hold the rotations: unit vectors around the circle. */
+const ROTATION_COLUMNS = SAMPLES.rotations / SAMPLES.sets;
 
-/** Returns rays of ambient occlusion around (0,0,1): direction and reach. @param {number} count per set */
-export function hemisphereSamples(count) {
-  const rays = new Float32Array(4 * SAMPLES.sets * count);
-  forEachPoint(count, 2, (at, u) => {
+/**
+ * Returns the table of samples: SAMPLES.sets rows of four numbers in each column. First `hemisphere` rays of ambient occlusion
+ * around (0,0,1), direction and reach; then `light` points of the unit disc; then the rotations, one column after another.
+ * @param {number} hemisphere  At least 1, per set. @param {number} light
+ */
+export function sampleTable(hemisphere, light) {
+  const width = hemisphere + light + ROTATION_COLUMNS, values = new Float32Array(4 * SAMPLES.sets * width);
+  const put = (/** @type {number} */ set, /** @type {number} */ column, /** @type {number[]} */ four) => values.set(four, 4 * (set * width + column));
+  forEachPoint(light, 1, (set, i, u) => {
     const r = Math.sqrt(u[0]), angle = 2 * Math.PI * u[1];
-    rays.set([r * Math.cos(angle), r * Math.sin(angle), Math.sqrt(1 - u[0]), 1 - Math.sqrt(u[2])], 4 * at);
+    put(set, hemisphere + i, [r * Math.cos(angle), r * Math.sin(angle)]);
   });
-  return rays;
-}
-
-/** Returns unit vectors around the circle, two numbers each. */
-export function rotations() {
-  const vectors = new Float32Array(2 * SAMPLES.rotations);
+  forEachPoint(hemisphere, 2, (set, i, u) => {
+    const r = Math.sqrt(u[0]), angle = 2 * Math.PI * u[1];
+    put(set, i, [r * Math.cos(angle), r * Math.sin(angle), Math.sqrt(1 - u[0]), 1 - Math.sqrt(u[2])]);
+  });
   for (let i = 0; i < SAMPLES.rotations; ++i) {
     const angle = (2 * Math.PI * i) / SAMPLES.rotations;
-    vectors.set([Math.cos(angle), Math.sin(angle)], 2 * i);
+    put(i % SAMPLES.sets, hemisphere + light + Math.floor(i / SAMPLES.sets), [Math.cos(angle), Math.sin(angle)]);
   }
-  return vectors;
+  return { values, width };
 }
 
 /** Returns the place of view sample `i` in its pixel: the R2 sequence around the centre. @param {number} i @returns {[number, number]} */

@@ -2,7 +2,7 @@
  * Takes the noise out of pictures of a view that moves: each shows few rays of sun and sky per pixel, and these add up over
  * frames (reproject.glsl) and over neighbours (smooth.glsl). The picture of a view at rest does not come here.
  */
-import { cameraUniforms, lightUniforms } from './frame_uniforms.js';
+import { cameraUniforms, skyUniforms } from './frame_uniforms.js';
 import { drawAll, makeTarget, makeTexture } from './gl_tools.js';
 
 /** @typedef {import('./picture.js').Picture} Picture */
@@ -59,7 +59,7 @@ export class Smoother {
       now = new SeenBuffers(gl, width, height);
     }
     const camera = /** @type {{[name: string]: any}} */ (cameraUniforms(place, settings.camera, width, height));
-    const sun = /** @type {number[]} */ (lightUniforms(place, settings).u_sun), state = stateOf(shot), { before } = this;
+    const sun = /** @type {number[]} */ (skyUniforms(place, settings).u_sun), state = stateOf(shot), { before } = this;
     gl.bindVertexArray(renderer.vertices);
     gl.viewport(0, 0, width, height);
 
@@ -81,10 +81,10 @@ export class Smoother {
     const smooth = renderer.program('smooth');
     smooth.use();
     renderer.setCast(smooth, shot, picture);
-    renderer.setShade(smooth, shot);
+    const map = renderer.setShade(smooth, shot);
     smooth.floats({ u_sample: [0.5, 0.5] });
     smooth.ints({ u_sun_radius: settings.sun.angle > SMALL_SUN ? SMOOTH_RADIUS : 0 });
-    smooth.textures({ u_seen: now.seen, u_guide: now.guide, u_start: picture.views[0], u_normal: picture.views[1], u_face: picture.views[2] });
+    smooth.textures({ ...map, u_seen: now.seen, u_guide: now.guide, u_start: picture.views[0], u_normal: picture.views[1], u_face: picture.views[2] });
     gl.bindFramebuffer(gl.FRAMEBUFFER, picture.sumTargets[1 - picture.current]);
     drawAll(gl);
     picture.current = 1 - picture.current;

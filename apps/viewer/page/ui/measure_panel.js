@@ -35,9 +35,11 @@ export function measurePanel(ui) {
   const rounded = (/** @type {Vec3} */ point) => roundTo3(point, stepBelow(voxel(), 0.001));
   /** Returns a length of the scene as text. @param {number} x */
   const lengthOf = (x) => lengthText(x * unitFactor(own(), unit()), voxel() * 0.1 * unitFactor(own(), unit()));
+  /** The unit's name behind a value. */
+  const unitName = () => (own() ? ' ' + unit() : '');
   /** Returns the value with its unit. @param {Measure} measure */
   const text = (measure) => {
-    const value = valueOf(measure, up()), name = own() ? ' ' + unit() : '';
+    const value = valueOf(measure, up()), name = unitName();
     if (measure.points.length < MEASURE_POINTS[measure.kind][0]) return '';
     if (measure.kind === 'angle') return `${value.toFixed(1)}°`;
     if (measure.kind !== 'area') return lengthOf(value) + name;
@@ -109,7 +111,7 @@ export function measurePanel(ui) {
   /** The numbers beside a value. @param {Measure} measure @returns {[string, string][]} */
   const partsOf = ({ kind: of, points }) => {
     if (of === 'distance') return points[1].map((x, i) => [`axis-${'xyz'[i]}`, `${'xyz'[i]} ${lengthOf(Math.abs(x - points[0][i]))}`]);
-    if (of === 'area') return [['', `perimeter ${lengthOf(pathLength(points, true))}`]];
+    if (of === 'area') return [['', `perimeter ${lengthOf(pathLength(points, true))}${unitName()}`]];
     return of === 'path' ? [['', `${points.length} points`]] : [];
   };
   let shown = '';

@@ -64,7 +64,7 @@ export function statisticsPanel(ui) {
         ['Steps per ray', (info, s) => number(s.stepsPerRay)],
         ['Steps per frame', (info, s) => countText(s.raysPerFrame * s.stepsPerRay)],
         ['Samples per pixel', (info, s) => `${s.samples} of ${s.samplesWanted}`],
-        ['Size of the picture', (info, s) => `${Math.round(s.scale * 100)}%`],
+        ['Resolution of the picture', (info, s) => `${Math.round(s.scale * 100)}%`],
       ]))),
     refresh() {
       for (const refresh of refreshers) refresh();

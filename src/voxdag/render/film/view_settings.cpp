@@ -6,7 +6,7 @@
 #include <functional>
 #include <map>
 
-#include "voxdag/render/film/json_file.hpp"
+#include "voxdag/render/film/environment_json.hpp"
 
 namespace voxdag {
 namespace {
@@ -22,8 +22,7 @@ class Reader {
  public:
   explicit Reader(const std::string& file) : file_(file) {}
 
-  ViewSettings read() {
-    const Json json = read_json_file(file_, {kMaxBytes, "a view"});
+  ViewSettings read(const Json& json) {
     RenderOptions& options = settings_.options;
     options.ground = true;
     options.section.hatch = true;
@@ -34,6 +33,8 @@ class Reader {
          {"sun", [&](const Json& value) { read_sun(value); }},
          {"sky",
           [&](const Json& value) { options.sky = real(value, "sky", 0, RenderLimits::kSky); }},
+         {"environment", [&](const Json& value) { read_environment(value); }},
+         {"bounces", [&](const Json& value) { read_bounces(value); }},
          {"exposure",
           [&](const Json& value) { options.exposure = real(value, "exposure", 0, 1e30); }},
          {"tone", [&](const Json& value) { options.tone = tone(value); }},
@@ -55,6 +56,12 @@ class Reader {
           }},
          {"colors", [&](const Json& value) { settings_.colors = flag(value, "colors"); }},
          {"normals", [&](const Json& value) { settings_.normals = flag(value, "normals"); }},
+         {"hidden",
+          [&](const Json& value) {
+            each_element(value, "hidden",
+                         [&](auto& one, const auto& key) { whole(one, key, 0, 65534); });
+            if (!value.empty()) ignore("hidden", "a picture shows all materials");
+          }},
          {"show",
           [&](const Json& value) {
             if (value != "light") ignore("show", "a picture shows the light; --pass writes others");
@@ -84,6 +91,10 @@ class Reader {
             each_element(value, "path",
                          [&](auto& one, const auto& key) { check_path_key(one, key); });
           }}});
+    if (options.bounces && options.occlusion_samples == 0) {
+      ignore("bounces", "it needs \"occlusion.samples\" of at least 1");
+      options.bounces.reset();
+    }
     return std::move(settings_);
   }
 
@@ -126,6 +137,11 @@ class Reader {
     if (!(value >= least && value <= most))
       refuse(key, fmt::format("is {}; allowed are {} to {}", value, least, most));
     return value;
+  }
+  int whole(const Json& json, const std::string& key, int least, int most) const {
+    const double value = number(json, key, least, most);
+    if (value != std::floor(value)) refuse(key, "is not a whole number");
+    return static_cast<int>(value);
   }
   float real(const Json& json, const std::string& key, double least, double most) const {
     return static_cast<float>(number(json, key, least, most));
@@ -210,16 +226,31 @@ class Reader {
                  {"on", [&](const Json& value) { options.with_sun = flag(value, "sun.on"); }}});
   }
 
+  void read_environment(const Json& json) {
+    RenderOptions& options = settings_.options;
+    each_member(json, "environment",
+                {{"map",
+                  [&](const Json& value) {
+                    if (!value.is_null())
+                      options.environment = environment_of_json(value, {file_, ""});
+                  }},
+                 {"turn", [&](const Json& value) {
+                    options.environment_degrees = number(value, "environment.turn", -360, 360);
+                  }}});
+  }
+
+  void read_bounces(const Json& json) {
+    if (!json.is_null())
+      settings_.options.bounces = whole(json, "bounces", 0, RenderLimits::kBounces);
+  }
+
   void read_occlusion(const Json& json) {
     RenderOptions& options = settings_.options;
     each_member(json, "occlusion",
                 {{"samples",
                   [&](const Json& value) {
-                    const double samples =
-                        number(value, "occlusion.samples", 0, RenderLimits::kOcclusionSamples);
-                    if (samples != std::floor(samples))
-                      refuse("occlusion.samples", "is not a whole number");
-                    options.occlusion_samples = static_cast<int>(samples);
+                    options.occlusion_samples =
+                        whole(value, "occlusion.samples", 0, RenderLimits::kOcclusionSamples);
                   }},
                  {"distance",
                   [&](const Json& value) {
@@ -319,6 +350,12 @@ class Reader {
 
 }  // namespace
 
-ViewSettings read_view_settings(const std::string& file) { return Reader(file).read(); }
+ViewSettings read_view_settings(const std::string& file) {
+  return Reader(file).read(read_json_file(file, {kMaxBytes, "a view"}));
+}
+
+ViewSettings parse_view_settings(const std::string& text, const std::string& name) {
+  return Reader(name).read(Json::parse(text));
+}
 
 }  // namespace voxdag

@@ -24,4 +24,8 @@ struct ViewSettings {
 /// names the key.
 ViewSettings read_view_settings(const std::string& file);
 
+/// Reads settings from a text that is JSON. `name` is its name in errors. Throws what
+/// read_view_settings() throws.
+ViewSettings parse_view_settings(const std::string& text, const std::string& name);
+
 }  // namespace voxdag

@@ -1,26 +1,15 @@
 // Shows the picture: exposure, tone mapping, background, sRGB and dither, as render/tone_map.hpp,
-// sky.hpp, render_plan.cpp and image/dither.hpp do. A picture with fewer pixels than the canvas is enlarged.
+// render_plan.cpp and image/dither.hpp do. A picture with fewer pixels than the canvas is enlarged.
 
 uniform sampler2D u_sum;      // red, green and blue of surfaces, and how many samples hit one
 uniform float u_samples;      // in the sum
 uniform int u_tone;           // TONE_KIND_*
 uniform int u_background;     // BACKGROUND_*
 uniform vec3 u_forward, u_right, u_up;  // as in camera.glsl
-uniform vec3 u_sun, u_sun_light, u_zenith, u_horizon, u_ground, u_sky_up;  // as in light.glsl
+uniform float u_sky_exposure; // factor that makes an environment as bright as the clear sky
 uniform vec2 u_canvas, u_picture;  // sizes in pixels
 uniform float u_exposure;     // 0: the sum holds display colours
 layout(location = 0) out vec4 out_color;
-
-vec3 skyRadiance(vec3 direction) {
-  float height = dot(direction, u_sky_up);
-  float haze = 1.0 - max(height, 0.0);
-  vec3 radiance = mix(u_zenith, u_horizon, haze * haze * haze * haze);
-  float glow = max(dot(direction, u_sun), 0.0);
-  glow *= glow;
-  radiance += u_sun_light * (LIGHT_GLOW * glow * glow * glow * glow);
-  float t = clamp((height - LIGHT_GROUND_BEGINS) / (LIGHT_GROUND_IS_FULL - LIGHT_GROUND_BEGINS), 0.0, 1.0);
-  return mix(radiance, u_ground * LIGHT_GROUND_SEEN, t * t * (3.0 - 2.0 * t));
-}
 
 vec3 neutral(vec3 rgb) {
   float least = min(rgb.x, min(rgb.y, rgb.z));
@@ -50,7 +39,7 @@ vec3 background(ivec2 at) {
   if (u_background == BACKGROUND_WHITE) return vec3(1.0);
   if (u_background == BACKGROUND_BLACK) return vec3(0.0);
   vec2 place = (vec2(at) + 0.5) / u_picture * 2.0 - 1.0;
-  return toneMap(skyRadiance(normalize(u_forward + u_right * place.x + u_up * place.y)) * EXPOSURE_SKY);
+  return toneMap(skyRadiance(normalize(u_forward + u_right * place.x + u_up * place.y)) * (EXPOSURE_SKY * u_sky_exposure));
 }
 
 // Surfaces and background are exposed apart, then mixed as light of the display.

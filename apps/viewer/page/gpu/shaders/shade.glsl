@@ -1,21 +1,27 @@
-// The light that a view sample sends to the eye: the port of render/sky.hpp and of the shading of
-// render/direct_light.hpp.
+// The light that a view sample sends to the eye: the port of the shading of render/render_tile.hpp.
 
 uniform int u_show;
 uniform float u_least, u_most;                // the values that are shown darkest and brightest
 uniform float u_view_distance;                // grid sides
 uniform bool u_sky_occluded;
-uniform vec3 u_sun;                           // unit vector to the sun
-uniform vec3 u_sun_light;                     // irradiance / pi
-uniform vec3 u_zenith, u_horizon, u_ground, u_sky_up, u_fill;
+uniform vec3 u_fill;                          // to the viewer's right
 uniform vec3 u_albedo;
 
 vec3 srgbToLinear(vec3 c) {
   return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, vec3(lessThanEqual(c, vec3(0.04045))));
 }
 
+// Returns the diffuse colour of a colour code of sample.glsl.
+vec3 albedoOf(float code) {
+  if (code >= 0.0) {
+    uint rgb = uint(code);
+    return srgbToLinear(vec3(float(rgb & 255u), float(rgb >> 8u & 255u), float(rgb >> 16u)) / 255.0);
+  }
+  return code < -1.5 ? CUT_ALBEDO * (code < -2.1 ? LIGHT_HATCH_SHADE : 1.0) : u_albedo;
+}
+
 vec3 skyLight(vec3 normal, vec3 view, float open) {
-  vec3 light = mix(u_ground, mix(u_zenith, u_horizon, LIGHT_HORIZON_IN_DOME), 0.5 + 0.5 * dot(normal, u_sky_up));
+  vec3 light = skyAmbient(normal);
   if (u_sky_occluded) return light * (LIGHT_OPEN * open);
   return light * max(LIGHT_FILL + LIGHT_FILL_FACING * dot(normal, view) + LIGHT_FILL_ASIDE * dot(normal, u_fill), 0.0);
 }
@@ -39,9 +45,9 @@ vec3 shown(vec4 normal, float value, vec3 view, float open) {
   return heat(0.12 + 0.8 * (value - u_least) / (u_most - u_least)) * facing;
 }
 
-// Returns what a view sample adds to the picture, and whether it covers the sky. `open` is the part of the sky that it
-// sees; `lit` the part of the sun, times the cosine.
-vec4 shaded(bool is_hit, vec4 normal, vec4 face, vec3 direction, float open, float lit) {
+// Returns what a view sample adds to the picture, and whether it covers the sky. `sky` is the light of sky and surfaces,
+// divided by pi, that arrives; `open` the part of the sky that the sample sees; `lit` the part of the sun, times the cosine.
+vec4 shaded(bool is_hit, vec4 normal, vec4 face, vec3 direction, vec3 sky, float open, float lit) {
   vec3 radiance = vec3(0.0);
   float covered = is_hit ? 1.0 : 0.0;
   if (!is_hit) {
@@ -49,17 +55,10 @@ vec4 shaded(bool is_hit, vec4 normal, vec4 face, vec3 direction, float open, flo
     if (u_show == SHOW_STEPS) radiance = heat(face.w / u_most);
     if (u_show == SHOW_OCCLUSION) radiance = vec3(1.0);
   } else if (u_show == SHOW_LIGHT) {
-    vec3 albedo = u_albedo;
-    if (face.z >= 0.0) {
-      uint code = uint(face.z);
-      albedo = srgbToLinear(vec3(float(code & 255u), float(code >> 8u & 255u), float(code >> 16u)) / 255.0);
-    } else if (face.z < -1.5) {
-      albedo = CUT_ALBEDO * (face.z < -2.1 ? LIGHT_HATCH_SHADE : 1.0);
-    }
-    vec3 light = skyLight(normal.xyz, -direction, open) + u_sun_light * lit;
-    radiance = light * albedo;
+    radiance = (sky + u_sun_light * lit) * albedoOf(face.z);
     if (face.z < -2.5) {  // The ground: its shadow darkens what lies behind.
       const vec3 luminance = EXPOSURE_LUMINANCE;
+      vec3 light = skyLight(normal.xyz, -direction, open) + u_sun_light * lit;
       vec3 all = skyLight(normal.xyz, -direction, 1.0) + u_sun_light * max(dot(normal.xyz, u_sun), 0.0);
       covered = face.w * max(1.0 - dot(light, luminance) / dot(all, luminance), 0.0);
       radiance = vec3(0.0);

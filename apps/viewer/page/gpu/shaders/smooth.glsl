@@ -13,7 +13,7 @@ void main() {
   vec4 normal = texelFetch(u_normal, at, 0), face = texelFetch(u_face, at, 0), guide = texelFetch(u_guide, at, 0);
   vec3 direction = pixelDirection(pixelOfFragment());
   if (guide.w == 0.0) {
-    out_sum = shaded(false, normal, face, normalize(direction), 1.0, 0.0);
+    out_sum = shaded(false, normal, face, normalize(direction), vec3(0.0), 1.0, 0.0);
     return;
   }
   vec3 away = direction * guide.z;
@@ -35,5 +35,6 @@ void main() {
       weights += each;
     }
   vec2 seen = weights.x > 0.0 && weights.y > 0.0 ? sum / weights : texelFetch(u_seen, at, 0).xy;
-  out_sum = shaded(true, normal, face, normalize(direction), seen.x, seen.y * max(dot(normal.xyz, u_sun), 0.0));
+  direction = normalize(direction);
+  out_sum = shaded(true, normal, face, direction, skyLight(normal.xyz, -direction, seen.x), seen.x, seen.y * max(dot(normal.xyz, u_sun), 0.0));
 }

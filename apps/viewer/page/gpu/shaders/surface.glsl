@@ -1,6 +1,5 @@
-// The surface that a ray hit: a smooth surface from the cells around it, and the point at which its
-// shadow and occlusion rays start. The port of render/surface_normal.hpp, trace/cell_blocks.hpp and
-// render/surface_point.hpp, whose comments explain the method.
+// The smooth surface from the cells around a cell: the port of render/surface_normal.hpp and
+// trace/cell_blocks.hpp, whose comments explain the method.
 
 uniform int u_coarser_fits;  // coarser levels that smooth the normal
 
@@ -128,39 +127,3 @@ float cubeHeight(vec3 normal) {
 }
 
 vec3 gridPoint(vec3 place) { return 1.0 + clamp(place, 0.0, 1.0); }
-
-bool isHidden(vec3 start, float cell_side, vec3 to_viewer) {
-  CellHit hit;
-  return castRay(rayFromPoint(start, to_viewer, 0.0, START_HIDDEN * cell_side), cell_side, 0.0, hit);
-}
-
-// Returns the point at which rays from the surface start. `place` is relative to the grid's corner.
-vec3 startPoint(vec3 place, vec3 face, float cell_side, vec3 direction, float depth) {
-  vec3 lifted = place + face * ((cubeHeight(face) + START_SLACK) * cell_side);
-  vec3 to_viewer = -normalize(direction);
-  float cell_depth = cell_side / length(direction);
-  vec3 left = to_viewer;
-  int axis = 0;
-  vec3 start = gridPoint(lifted);
-  // 0: lifted; 1..3: towards the viewer; 4..9: along the axes; 10..12: farther towards the viewer.
-  for (int attempt = 0; attempt < 13; ++attempt) {
-    vec3 there = lifted;
-    if (attempt >= 1 && attempt <= 3) {
-      there = u_eye + direction * (depth - float(attempt) * cell_depth);
-    } else if (attempt >= 4 && attempt <= 9) {
-      bool first = (attempt & 1) == 0;
-      if (first) {
-        vec3 size = abs(left);
-        axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-      }
-      there[axis] += (left[axis] < 0.0 ? -1.0 : 1.0) * (first ? 1.0 : 2.0) * cell_side;
-      if (!first) left[axis] = 0.0;
-    } else if (attempt >= 10) {
-      float cells = attempt == 10 ? 4.0 : attempt == 11 ? 6.0 : 9.0;
-      there = u_eye + direction * (depth - cells * cell_depth);
-    }
-    start = gridPoint(there);
-    if (!isHidden(start, cell_side, to_viewer)) break;
-  }
-  return start;
-}

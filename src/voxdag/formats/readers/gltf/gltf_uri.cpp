@@ -1,7 +1,6 @@
 #include "voxdag/formats/readers/gltf/gltf_uri.hpp"
 
-#include <cstdint>
-
+#include "voxdag/core/io/base64.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
 
 namespace voxdag {
@@ -12,38 +11,6 @@ int hex_digit(char c) {
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
   if (c >= 'A' && c <= 'F') return c - 'A' + 10;
   return -1;
-}
-
-/// Returns the value of a base64 digit, also of the URL-safe alphabet, or -1.
-int base64_digit(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  if (c == '+' || c == '-') return 62;
-  if (c == '/' || c == '_') return 63;
-  return -1;
-}
-
-/// Returns nothing if the text is not base64.
-std::optional<std::string> decode_base64(std::string_view text, Work work) {
-  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-  std::string out;
-  out.reserve(text.size() / 4 * 3 + 3);
-  std::uint32_t bits = 0;
-  int count = 0;
-  CancelPoll poll(work);
-  for (const char c : text) {
-    poll.step();
-    const int digit = base64_digit(c);
-    if (digit < 0) return std::nullopt;
-    bits = bits << 6 | static_cast<std::uint32_t>(digit);
-    count += 6;
-    if (count >= 8) {
-      count -= 8;
-      out += static_cast<char>(bits >> count & 0xFF);
-    }
-  }
-  return out;
 }
 
 }  // namespace

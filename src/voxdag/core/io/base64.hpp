@@ -1,8 +1,11 @@
 #pragma once
 /// Base64, RFC 4648, section 4.
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -25,5 +28,9 @@ inline std::string base64(std::string_view bytes) {
   std::string text = encoder.add(bytes);
   return text += encoder.finish();
 }
+
+/// Returns the bytes of a text, also in the alphabet for URLs and without padding; nothing if it is
+/// not base64.
+std::optional<std::string> decode_base64(std::string_view text, Work work = {});
 
 }  // namespace voxdag
