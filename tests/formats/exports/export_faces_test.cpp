@@ -13,6 +13,7 @@
 #include "support/temp_dir.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/core/vec2.hpp"
+#include "voxdag/formats/exports/export_ply.hpp"
 #include "voxdag/formats/exports/faces/manifold_faces.hpp"
 #include "voxdag/formats/exports/faces/rectangles.hpp"
 #include "voxdag/formats/readers/mesh_chunks.hpp"
@@ -247,6 +248,50 @@ TEST(ExportStl, TheMeshIsClosed) {
   }
   for (const auto& [edge, balance] : edges) EXPECT_EQ(balance, 0);
   EXPECT_EQ(areas_of(triangles), areas_of(scene.view(), whole_grid(5)));
+}
+
+TEST(ExportStl, SmoothTrianglesHaveNormalsOfTheirOwn) {
+  const TempDir dir;
+  const ExportedScene scene(5, 3000);
+  ExportOptions options;
+  options.faces = FaceMesh::kSmooth;
+  export_stl(dir / "v.stl", scene.view(), scene.grid, options);
+  const std::string bytes = read_text(dir / "v.stl");
+  std::map<std::pair<std::array<float, 3>, std::array<float, 3>>, int> edges;
+  for (std::size_t at = 84; at < bytes.size(); at += 50) {
+    const auto corners = read_at<std::array<Vec3f, 3>>(bytes, at + 12);
+    const Vec3d normal =
+        cross(Vec3d(corners[1]) - Vec3d(corners[0]), Vec3d(corners[2]) - Vec3d(corners[0]));
+    // Coordinates are rounded to 2^-19 of a voxel.
+    EXPECT_LT(length(normalized(normal) - Vec3d(read_at<Vec3f>(bytes, at))), 1e-4);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3f a = corners[c], b = corners[(c + 1) % 3];
+      ++edges[{{a.x, a.y, a.z}, {b.x, b.y, b.z}}];
+      --edges[{{b.x, b.y, b.z}, {a.x, a.y, a.z}}];
+    }
+  }
+  for (const auto& [edge, balance] : edges) EXPECT_EQ(balance, 0);
+}
+
+TEST(FaceMeshes, SmoothFilesHaveTheSameSurface) {
+  const TempDir dir;
+  const ExportedScene scene(5, 3000);
+  ExportOptions options;
+  options.faces = FaceMesh::kSmooth;
+  export_stl(dir / "v.stl", scene.view(), scene.grid, options);
+  export_obj(dir / "v.obj", scene.view(), scene.grid, options);
+  export_glb(dir / "v.glb", scene.view(), scene.grid, options);
+  export_ply_faces(dir / "v.ply", scene.view(), scene.grid, options);
+  export_3mf(dir / "v.3mf", scene.view(), scene.grid, options);
+  const Mesh stl = read_mesh(dir / "v.stl"), obj = read_mesh(dir / "v.obj");
+  for (const char* name : {"v.obj", "v.glb", "v.ply", "v.3mf"}) {
+    const Mesh mesh = read_mesh(dir / name);
+    EXPECT_EQ(mesh.vertices.size(), obj.vertices.size()) << name;  // They are shared.
+    ASSERT_EQ(mesh.triangles.size(), stl.triangles.size()) << name;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_EQ(mesh.vertices[mesh.triangles[i][c]], stl.vertices[stl.triangles[i][c]]);
+  }
 }
 
 /// Returns the triangles of an STL file, as written.

@@ -40,6 +40,43 @@ TEST(ExportSlices, OfOtherAxesTurnTheVoxels) {
   }
 }
 
+TEST(ExportSlices, EmptyOnesAreLeftOutAndTheOthersKeepTheirPlaces) {
+  const TempDir dir;
+  ExportedScene scene(4, 0);
+  scene.voxels = {{1, 2, 5}, {3, 9, 5}, {3, 15, 7}, {4, 4, 12}};
+  scene.dag = brute_svdag(4, scene.voxels);
+  ExportOptions options = windowed({1, 1, 3}, {16, 16, 16});
+  options.skip_empty = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto folder = dir / std::to_string(axis);
+    export_slices(folder, axis, scene.view(), scene.grid, options);
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      files += entry.path().extension() == ".png" ? 1 : 0;
+    EXPECT_EQ(files, axis == 1 ? 4u : 3u);
+    const auto source = open_voxel_source(folder);
+    EXPECT_TRUE(source->warnings().empty());
+    std::set<VoxelKey> found, expected;
+    source->visit_all([&](const VoxelBatch& batch) {
+      for (const auto& place : batch.places) {
+        const Vec3i v(place);
+        found.insert({v.x, v.y, v.z});
+      }
+    });
+    for (const Vec3i v : scene.voxels) expected.insert({v.x, v.y, v.z});
+    EXPECT_EQ(found, expected);
+  }
+  for (const char* slice : {"2/slice_0002.png", "2/slice_0004.png", "2/slice_0009.png"})
+    EXPECT_TRUE(std::filesystem::exists(dir / slice)) << slice;
+  // The file of a slice is the one that it has among all.
+  export_slices(dir / "all", 2, scene.view(), scene.grid, windowed({1, 1, 3}, {16, 16, 16}));
+  EXPECT_EQ(read_text(dir / "2/slice_0004.png"), read_text(dir / "all/slice_0004.png"));
+  options.window = Box3i{{0, 0, 0}, {16, 16, 4}};
+  EXPECT_EQ(error_of([&] { export_slices(dir / "no", 2, scene.view(), scene.grid, options); }),
+            (dir / "no").string() + ": no slice is left: all are without voxels");
+  EXPECT_EQ(dir.count(), 4);
+}
+
 TEST(ExportSlices, TheFolderIsCompleteOrNotThere) {
   const TempDir dir;
   const ExportedScene scene(4, 300);

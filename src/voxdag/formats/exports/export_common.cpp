@@ -114,6 +114,7 @@ void write_placement_file(const std::filesystem::path& path, const Grid& grid, c
     for (const char axis : layout.axes)
       json["array"]["shape"].push_back(hi[axis - 'x'] - lo[axis - 'x']);
   }
+  if (layout.has_numbered_slices) json["array"]["slices"] = "numbered";
   if (layout.offset) json["offset"] = {layout.offset->x, layout.offset->y, layout.offset->z};
   if (const auto& turn = options.turn)
     json["turned"] = {{"up", std::string(1, turn->up)},

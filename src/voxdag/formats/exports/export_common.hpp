@@ -56,6 +56,8 @@ struct ArrayLayout {
   /// window.lo in other files.
   std::optional<Vec3i> lo_in_file = {};
   std::optional<Vec3d> offset = {};  ///< What must be added to the coordinates of the file.
+  /// The numbers in the names of slices tell their places, because empty ones are left out.
+  bool has_numbered_slices = false;
 };
 
 /// Writes PATH.json: the grid, the window, the layout, how they place a voxel in the world, and

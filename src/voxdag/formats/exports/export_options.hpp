@@ -25,7 +25,8 @@ namespace voxdag {
 enum class FaceMesh : std::uint8_t {
   kFewest,      ///< The largest rectangles for .glb and .obj; corners can lie inside edges.
   kWatertight,  ///< Every edge belongs to an even number of triangles: no corner lies inside one.
-  kManifold     ///< Every edge belongs to two triangles, and those of a corner form one fan.
+  kManifold,    ///< Every edge belongs to two triangles, and those of a corner form one fan.
+  kSmooth       ///< A manifold whose corners move by up to a third of a voxel along each axis.
 };
 
 struct ExportOptions {
@@ -43,20 +44,27 @@ struct ExportOptions {
     char up, from_up;  ///< 'y' or 'z'.
   };
   std::optional<Turn> turn;
-  /// How faces are written to .glb, .obj and .stl. STL files are watertight at least.
+  /// How faces are written to .glb, .obj, .stl and .3mf. STL files are watertight at least, 3MF
+  /// files manifolds. PLY files know two kinds: smooth or not.
   FaceMesh faces = FaceMesh::kFewest;
   /// Writes colours to .glb and .obj as a texture with a pixel for each colour, for programs that
   /// show no colours of corners. OBJ files get PATH.mtl and PATH.png, with their extension
   /// replaced.
   bool texture = false;
-  /// If not null: receives the number of triangles of .glb, .obj and .stl, or of faces of .ply.
+  /// Leaves out the slices without voxels (export_slices()).
+  bool skip_empty = false;
+  /// The unit of the world's coordinates, for formats that store one: mm, cm, m, in, ft, or empty.
+  std::string unit;
+  /// If not null: receives the number of triangles of .glb, .obj, .stl and .3mf, or of faces of
+  /// .ply.
   std::uint64_t* faces_written = nullptr;
   /// If not null: receives lines for the user about the output.
   std::vector<std::string>* notes = nullptr;
   /// The greatest size of a dense array, in bytes; larger ones are refused before anything is
   /// written.
   std::uint64_t most_dense_bytes = std::uint64_t{16} << 30;
-  /// Counts the grids of export_vdb(); may be null.
+  /// Counts the grids of export_vdb(), and the vertices that the triangles still to come share in
+  /// manifolds: a small part of a surface. May be null.
   MemoryBudget* memory = nullptr;
   /// Called from time to time with the fraction of the work and the number of voxels that are done.
   /// It may throw (Cancelled) to stop the export. While voxels are counted, both arguments are 0.

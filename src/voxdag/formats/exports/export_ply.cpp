@@ -3,11 +3,13 @@
 #include <array>
 #include <bitset>
 #include <limits>
+#include <span>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
+#include "voxdag/formats/exports/faces/exported_polygons.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
 
 namespace voxdag {
@@ -44,10 +46,10 @@ class PlyFile {
     ++vertices_;
   }
 
-  void write_quad(const std::array<std::uint32_t, 4>& corners) {
-    const unsigned char count = 4;
+  void write_face(std::span<const std::uint32_t> vertices) {
+    const auto count = static_cast<unsigned char>(vertices.size());
     file_.write(&count, 1);
-    file_.write(corners.data(), sizeof corners);
+    file_.write(vertices);
     ++faces_;
   }
 
@@ -193,6 +195,33 @@ void for_each_part(const BlockSurface& whole, Vec3i origin, bool by_voxel, const
   }
 }
 
+void check_corner_count(const std::filesystem::path& path, const PlyFile& file) {
+  if (file.vertices() > std::numeric_limits<std::int32_t>::max())
+    throw Error(path.string(), "", "more than 2^31 - 1 corners: choose a smaller window");
+}
+
+/// Writes the triangles of a smooth manifold.
+void write_smooth(const std::filesystem::path& path, const VoxelSet& voxels, const Box3i& window,
+                  const ExportOptions& options, PlyFile& file) {
+  ExportedPolygons polygons(voxels, window, options, PolygonFormat::kVertexLooks);
+  LookReader look = options.look_reader();
+  VoxelLook of_voxel;
+  polygons.for_each(
+      [&](const FacePolygon& polygon, const SharedVertices& vertices) {
+        if (!look.is_empty()) of_voxel = look.read(polygon.voxel, voxels.levels());
+        for (const Vec3d place : vertices.added()) file.write_vertex(place, of_voxel);
+        check_corner_count(path, file);
+      },
+      0.5);
+  polygons.for_each([&](const FacePolygon& polygon, const SharedVertices& vertices) {
+    for (std::array<std::uint32_t, 3> triangle : polygon.triangles) {
+      for (std::uint32_t& corner : triangle)
+        corner = static_cast<std::uint32_t>(vertices.numbers()[corner]);
+      file.write_face(triangle);
+    }
+  });
+}
+
 }  // namespace
 
 void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
@@ -220,10 +249,14 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
                       const ExportOptions& options) {
   refuse_pipe(path);
   const Box3i window = export_window(path, voxels, options);
-  const std::uint64_t count = count_for_export(path, voxels, window, 0, options);
   LookReader look = options.look_reader();
   const bool by_voxel = !look.is_empty();
   PlyFile file(path, grid, content_of(look, true), options.turn);
+  if (options.faces == FaceMesh::kSmooth) {
+    write_smooth(path, voxels, window, options, file);
+    return file.commit();
+  }
+  const std::uint64_t count = count_for_export(path, voxels, window, 0, options);
   // In PLY all vertices come before all faces. So two walks compute the same surfaces.
   const auto for_each_surface = [&](const auto& fn) {
     export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t block) {
@@ -236,8 +269,7 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
     for (int i = 0; i < kCorners; ++i)
       if (surface.corners[i])
         file.write_vertex(Vec3d(origin + Vec3i{i % 5, i / 5 % 5, i / 25}), of_voxel);
-    if (file.vertices() > std::numeric_limits<std::int32_t>::max())
-      throw Error(path.string(), "", "more than 2^31 - 1 corners: choose a smaller window");
+    check_corner_count(path, file);
   });
   std::uint32_t first_vertex = 0;
   for_each_surface([&](const BlockSurface& surface, Vec3i, Vec3i) {
@@ -250,7 +282,7 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
     for_each_face(surface, [&](const std::array<Vec3i, 4>& corners) {
       std::array<std::uint32_t, 4> vertices;
       for (int i = 0; i < 4; ++i) vertices[i] = vertex_of_corner[corner_index(corners[i])];
-      file.write_quad(vertices);
+      file.write_face(vertices);
     });
     first_vertex = next;
   });

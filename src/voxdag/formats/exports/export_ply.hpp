@@ -14,7 +14,9 @@ void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels
 /// Writes the voxels of the window as cubes in world units, as PLY: a quad, counter-clockwise from
 /// outside, for each face whose neighbour is not a voxel of the window. Quads share corners within
 /// a leaf block of 4³. With a look, they share corners only within a voxel, and each corner has the
-/// attributes of that voxel. Coordinates are as in export_ply_points(); at most 2^31 - 1 corners.
+/// attributes of that voxel. Smooth faces (FaceMesh::kSmooth) are triangles that share their
+/// corners, if there is no look. Coordinates are as in export_ply_points(); at most 2^31 - 1
+/// corners.
 void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                       const ExportOptions& options = {});
 

@@ -55,6 +55,7 @@ std::vector<std::filesystem::path> export_scene(const std::filesystem::path& pat
                                                 const ExportContent& content, ExportOptions options,
                                                 Work work) {
   const Grid& grid = metadata.grid;
+  options.unit = metadata.presentation.unit;
   const std::optional<char> from = up_of(metadata), custom = custom_up(path, content);
   const std::optional<char> to = content.up ? content.up : from ? custom : std::nullopt;
   if (!to || from == to) return export_voxels(path, voxels, grid, content, options);

@@ -87,6 +87,7 @@ constexpr ExportFormat kExportFormats[] = {{".spc.npy", dag_file<export_spc>, fa
                                            {".glb", one_file<export_glb>, true, 'y'},
                                            {".obj", one_file<export_obj>, true},
                                            {".stl", one_file<export_stl>, false, 'z', true},
+                                           {".3mf", one_file<export_3mf>, true, 'z'},
                                            {".vox", vox, true, 'z', true},
                                            {".binvox", one_file<export_binvox>, false},
                                            {".schem", one_file<export_schem>, true, 'y', true},

@@ -132,4 +132,10 @@ std::unique_ptr<VoxelSource> with_file_placement(const std::filesystem::path& pa
   }
 }
 
+bool has_numbered_slices(const std::filesystem::path& folder) {
+  const nlohmann::json json = read_placement(folder / "placement.json");
+  const nlohmann::json array = json.is_null() ? json : json.value("array", nlohmann::json());
+  return array.is_object() && array.value("slices", nlohmann::json()) == "numbered";
+}
+
 }  // namespace voxdag

@@ -13,4 +13,8 @@ namespace voxdag {
 std::unique_ptr<VoxelSource> with_file_placement(const std::filesystem::path& path,
                                                  std::unique_ptr<VoxelSource> source);
 
+/// Returns whether the placement in a folder of slices says that the numbers in their names tell
+/// their places: empty slices are left out.
+bool has_numbered_slices(const std::filesystem::path& folder);
+
 }  // namespace voxdag

@@ -60,7 +60,9 @@ constexpr SourceFormat kSourceFormats[] = {
 std::unique_ptr<VoxelSource> open_by_name(const Path& path, std::string name,
                                           const Options& options) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) return open_png_slices(path, options.threshold);
+  if (std::filesystem::is_directory(path, ignored))
+    return open_png_slices(path, options.threshold,
+                           options.use_placement && has_numbered_slices(path));
   std::string endings;
   name = lower_case(name);
   for (const SourceFormat& format : kSourceFormats) {

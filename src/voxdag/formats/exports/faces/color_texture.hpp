@@ -32,7 +32,7 @@ class ColorTexture {
   /// Returns the place of an added colour: the middle of its pixel. (0, 0) is the upper left
   /// corner.
   Vec2f uv(Value8 color) const {
-    const std::uint32_t pixel = pixel_of(color);
+    const std::uint32_t pixel = index_of(color);
     const auto middle = [&](std::uint32_t i) {
       return (static_cast<float>(i) + 0.5f) / static_cast<float>(side_);
     };
@@ -42,13 +42,25 @@ class ColorTexture {
   ImageRgb8 image() const {
     ImageRgb8 image(static_cast<int>(side_), static_cast<int>(side_));
     std::size_t at = 0;
-    for (std::uint32_t i = 0; i < used_.size(); ++i)
-      for (std::uint64_t left = used_[i]; left != 0; left &= left - 1) {
-        const std::uint32_t code = 64 * i + static_cast<std::uint32_t>(std::countr_zero(left));
-        for (const int shift : {16, 8, 0})
-          image.pixels[at++] = static_cast<std::uint8_t>(code >> shift);
-      }
+    for_each([&](std::uint32_t code) {
+      for (const int shift : {16, 8, 0})
+        image.pixels[at++] = static_cast<std::uint8_t>(code >> shift);
+    });
     return image;
+  }
+
+  /// Returns the number of an added colour, from 0, in the order of their codes.
+  std::uint32_t index_of(Value8 color) const {
+    const std::uint32_t code = code_of(color), word = code / 64;
+    const std::uint64_t below = (std::uint64_t{1} << (code % 64)) - 1;
+    return before_[word] + static_cast<std::uint32_t>(std::popcount(used_[word] & below));
+  }
+  /// Calls fn(code) for the added colours in their order: 0xRRGGBB.
+  template <class Fn>
+  void for_each(const Fn& fn) const {
+    for (std::uint32_t i = 0; i < used_.size(); ++i)
+      for (std::uint64_t left = used_[i]; left != 0; left &= left - 1)
+        fn(64 * i + static_cast<std::uint32_t>(std::countr_zero(left)));
   }
 
  private:
@@ -56,11 +68,6 @@ class ColorTexture {
 
   static std::uint32_t code_of(Value8 color) {
     return std::uint32_t{color.x} << 16 | std::uint32_t{color.y} << 8 | color.z;
-  }
-  std::uint32_t pixel_of(Value8 color) const {
-    const std::uint32_t code = code_of(color), word = code / 64;
-    const std::uint64_t below = (std::uint64_t{1} << (code % 64)) - 1;
-    return before_[word] + static_cast<std::uint32_t>(std::popcount(used_[word] & below));
   }
 
   std::vector<std::uint64_t> used_;    ///< A bit for each code.

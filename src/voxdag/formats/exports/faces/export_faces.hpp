@@ -1,5 +1,5 @@
 #pragma once
-/// Exports the outer faces of voxels as meshes: GLB, OBJ and STL.
+/// Exports the outer faces of voxels as meshes: GLB, OBJ, STL and 3MF.
 #include "voxdag/formats/exports/export_options.hpp"
 
 namespace voxdag {
@@ -24,6 +24,15 @@ void export_obj(const std::filesystem::path& path, const VoxelSet& voxels, const
 /// directions: the mesh is closed. STL has no colours. Throws Error, before it writes, if the file
 /// would have more than 2^32 - 1 triangles, or if float coordinates are not exact to 1/16 voxel.
 void export_stl(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
+                const ExportOptions& options = {});
+
+/// Writes the outer faces as a 3MF file with one object, a manifold or a smooth one
+/// (options.faces), whose triangles share their vertices. Coordinates are world units:
+/// options.unit, which 3MF takes for millimetres if it is empty. Colours are a colour group, which
+/// triangles refer to. Throws Error, before it writes, if there are no voxels, or more than 2^31 -
+/// 1 vertices. Sources: 3MF Consortium, Core Specification 1.3, Materials and Properties
+/// Extension 1.2.
+void export_3mf(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                 const ExportOptions& options = {});
 
 }  // namespace voxdag

@@ -60,7 +60,7 @@ struct GlbPlan {
     return Vec3f(is_world ? grid.to_world(corner) : corner - Vec3d(origin));
   }
   std::uint64_t stride() const { return has_colors ? sizeof(ColoredCorner) : sizeof(Vec3f); }
-  std::uint64_t corners() const { return extent.corners; }
+  std::uint64_t corners() const { return extent.vertices; }
   std::uint64_t corner_bytes() const { return corners() * stride(); }
   std::uint64_t index_bytes() const { return extent.triangles * kIndexBytes; }
   std::uint64_t data_bytes() const { return corner_bytes() + index_bytes() + texture.size(); }
@@ -158,10 +158,11 @@ void write_word(AtomicFile& file, std::uint64_t word) {
   file.write(&value, sizeof value);
 }
 
-void write_corners(AtomicFile& file, const GlbPlan& plan, const FacePolygon& polygon) {
+void write_corners(AtomicFile& file, const GlbPlan& plan, const FacePolygon& polygon,
+                   const SharedVertices& vertices) {
   const Value8 color = polygon.color;
   const Vec2f uv = plan.texture.empty() ? Vec2f{} : plan.extent.texture.uv(color);
-  for (const Vec3d corner : polygon.corners) {
+  for (const Vec3d corner : vertices.added()) {
     const Vec3f place = plan.place(corner);
     if (!plan.texture.empty()) {
       const TexturedCorner textured{place, uv};
@@ -181,7 +182,7 @@ void write_corners(AtomicFile& file, const GlbPlan& plan, const FacePolygon& pol
 void export_glb(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                 const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
-  ExportedPolygons polygons(voxels, window, options, true);
+  ExportedPolygons polygons(voxels, window, options, PolygonFormat::kVertexColors);
   GlbPlan plan{grid, window.lo, float_suffices(grid), polygons.has_colors(), polygons.measure(),
                {}};
   if (polygons.has_texture() && plan.extent.triangles > 0)
@@ -204,14 +205,14 @@ void export_glb(const std::filesystem::path& path, const VoxelSet& voxels, const
   if (data > 0) {
     write_word(file, data);
     file.write(std::string_view("BIN\0", 4));
-    polygons.for_each([&](const FacePolygon& polygon) { write_corners(file, plan, polygon); }, 0.8);
-    std::uint32_t first = 0;
-    polygons.for_each([&](const FacePolygon& polygon) {
-      for (std::array<std::uint32_t, 3> triangle : polygon.triangles) {
-        for (std::uint32_t& corner : triangle) corner += first;
-        file.write(triangle.data(), sizeof triangle);
-      }
-      first += static_cast<std::uint32_t>(polygon.corners.size());
+    polygons.for_each(
+        [&](const FacePolygon& polygon, const SharedVertices& vertices) {
+          write_corners(file, plan, polygon, vertices);
+        },
+        0.8);
+    polygons.for_each([&](const FacePolygon& polygon, const SharedVertices& vertices) {
+      for (const std::array<std::uint32_t, 3>& triangle : polygon.triangles)
+        for (const std::uint32_t corner : triangle) write_word(file, vertices.numbers()[corner]);
     });
     file.write(plan.texture);
   }

@@ -29,7 +29,7 @@ std::array<std::string, 256> channel_texts() {
 void export_obj(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                 const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
-  ExportedPolygons polygons(voxels, window, options, true);
+  ExportedPolygons polygons(voxels, window, options, PolygonFormat::kVertexColors);
   std::filesystem::path material = path, image = path;
   material.replace_extension(".mtl");
   image.replace_extension(".png");
@@ -50,11 +50,11 @@ void export_obj(const std::filesystem::path& path, const VoxelSet& voxels, const
   file.write(text);
   const bool use_float = float_suffices(grid);
   const std::array<std::string, 256> channels = channel_texts();
-  std::uint64_t corner = 1, uv = 0;
-  polygons.for_each([&](const FacePolygon& polygon) {
+  std::uint64_t uv = 0;
+  polygons.for_each([&](const FacePolygon& polygon, const SharedVertices& vertices) {
     text.clear();
     const Value8 color = polygon.color;
-    for (const Vec3d place : polygon.corners) {
+    for (const Vec3d place : vertices.added()) {
       text.append("v");
       const Vec3d world = grid.to_world(place);
       if (use_float)
@@ -75,12 +75,11 @@ void export_obj(const std::filesystem::path& path, const VoxelSet& voxels, const
     for (const std::array<std::uint32_t, 3>& triangle : polygon.triangles) {
       text.append("f");
       for (const std::uint32_t i : triangle) {
-        text.append(" ").append(std::to_string(corner + i));
+        text.append(" ").append(std::to_string(vertices.numbers()[i] + 1));
         if (uv > 0) text.append("/").append(std::to_string(uv));
       }
       text.append("\n");
     }
-    corner += polygon.corners.size();
     file.write(text);
   });
   file.commit();

@@ -21,6 +21,13 @@ void write_triangle(AtomicFile& file, Vec3f normal, Vec3f a, Vec3f b, Vec3f c) {
   file.write(bytes.data(), bytes.size());
 }
 
+Vec3f normal_of(const FacePolygon& polygon, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  const std::vector<Vec3d>& p = polygon.corners;
+  const Vec3d normal =
+      normalized_or(cross(p[b] - p[a], p[c] - p[a]), Vec3d(face_normal(polygon.face)));
+  return Vec3f(normal + Vec3d{});  // No zero is negative.
+}
+
 }  // namespace
 
 void export_stl(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& world,
@@ -36,7 +43,7 @@ void export_stl(const std::filesystem::path& path, const VoxelSet& voxels, const
                   "STL has float coordinates, which cannot hold voxels of this size: export .obj, "
                   ".ply or .glb");
   }
-  ExportedPolygons polygons(voxels, window, options, false);
+  ExportedPolygons polygons(voxels, window, options, PolygonFormat::kNoColors);
   const std::uint64_t triangles = polygons.measure().triangles;
   if (triangles > kMaxTriangles)
     refuse_export(
@@ -49,12 +56,11 @@ void export_stl(const std::filesystem::path& path, const VoxelSet& voxels, const
   const auto count = static_cast<std::uint32_t>(triangles);
   file.write(&count, sizeof count);
   std::vector<Vec3f> corners;
-  polygons.for_each([&](const FacePolygon& polygon) {
+  polygons.for_each([&](const FacePolygon& polygon, const SharedVertices&) {
     corners.clear();
     for (const Vec3d place : polygon.corners) corners.push_back(Vec3f(grid.to_world(place)));
-    const Vec3f normal(face_normal(polygon.face));
     for (const auto& [a, b, c] : polygon.triangles)
-      write_triangle(file, normal, corners[a], corners[b], corners[c]);
+      write_triangle(file, normal_of(polygon, a, b, c), corners[a], corners[b], corners[c]);
   });
   file.commit();
   if (!offset) return remove_placement(path);

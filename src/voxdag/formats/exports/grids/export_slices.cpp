@@ -29,6 +29,10 @@ void pack_bits(std::span<const std::uint64_t> bits, std::vector<std::uint8_t>& r
   });
 }
 
+bool has_bits(std::span<const std::uint64_t> bits) {
+  return std::any_of(bits.begin(), bits.end(), [](std::uint64_t word) { return word != 0; });
+}
+
 /// Returns the axes of slices across `axis`.
 PlaneAxes axes_of(int axis) {
   const int column = axis == 0 ? 1 : 0, row = axis == 2 ? 1 : 2;
@@ -64,16 +68,22 @@ void export_slices(const std::filesystem::path& folder, int axis, const VoxelSet
 
   const TemporaryFolder output(new_folder(folder));
   std::vector<std::uint8_t> row(has_colors ? std::size_t{width} * 4 : (std::size_t{width} + 7) / 8);
+  const std::vector<std::uint8_t> empty_row(row.size());
   std::unique_ptr<PngRowWriter> file;
+  bool has_files = false;
   std::uint64_t done = 0;
   for_each_row(voxels, window, axes,
                [&](std::int32_t k, std::int32_t at, std::span<const std::uint64_t> bits) {
                  if ((at & 255) == 0 && options.progress)
                    options.progress(static_cast<double>(k - window.lo[axis]) / size[axis], done);
-                 if (at == 0) {
+                 if (at == 0) file.reset();
+                 if (file == nullptr) {
+                   if (options.skip_empty && !has_bits(bits)) return;
                    file = std::make_unique<PngRowWriter>(
                        output.path() / slice_name(k - window.lo[axis], digits), width, height,
                        has_colors ? PngPixels::kRgba : PngPixels::kBits);
+                   has_files = true;
+                   for (std::int32_t skipped = 0; skipped < at; ++skipped) file->write(empty_row);
                  }
                  if (has_colors) {
                    std::fill(row.begin(), row.end(), std::uint8_t{0});
@@ -98,13 +108,14 @@ void export_slices(const std::filesystem::path& folder, int axis, const VoxelSet
                  if (at == size[axes.row] - 1) file->commit();
                });
   file.reset();
+  if (!has_files) throw Error(folder.string(), "", "no slice is left: all are without voxels");
   const std::string names = "xyz";
-  write_placement_file(
-      output.path() / "placement.json", grid, window,
-      {has_colors ? "RGBA, opaque where the voxel is set" : "1 where the voxel is set",
-       has_colors ? "RGBA of 8 bits" : "1 bit",
-       {names[axis], names[axes.row], names[axes.column]}},
-      options);
+  ArrayLayout layout{
+      has_colors ? "RGBA, opaque where the voxel is set" : "1 where the voxel is set",
+      has_colors ? "RGBA of 8 bits" : "1 bit",
+      {names[axis], names[axes.row], names[axes.column]}};
+  layout.has_numbered_slices = options.skip_empty;
+  write_placement_file(output.path() / "placement.json", grid, window, layout, options);
   output.take_name();
 }
 

@@ -9,7 +9,9 @@ namespace voxdag {
 /// the first of the other axes, from the left, rows the second, from the top: for axis z, x and y.
 /// Without colours, pixels have one bit: 1 for voxels. With a look that has colours, pixels are
 /// RGBA: voxels are opaque, other places transparent black. Writes the placement as placement.json
-/// into the folder, which appears when it is complete. Throws Error if it exists and is not empty.
+/// into the folder, which appears when it is complete. With options.skip_empty, layers without
+/// voxels have no file; the others keep their numbers. Throws Error if the folder exists and is not
+/// empty, or if no layer is left.
 void export_slices(const std::filesystem::path& folder, int axis, const VoxelSet& voxels,
                    const Grid& grid, const ExportOptions& options = {});
 

@@ -83,14 +83,17 @@ std::string missing_slices(const std::vector<std::string>& names) {
 
 class PngSlices : public VoxelSource {
  public:
-  PngSlices(std::filesystem::path folder, std::optional<double> threshold)
-      : folder_(std::move(folder)), names_(names_of_slices(folder_)), threshold_(threshold) {
+  PngSlices(std::filesystem::path folder, std::optional<double> threshold, bool numbered)
+      : folder_(std::move(folder)),
+        names_(names_of_slices(folder_)),
+        numbered_(numbered),
+        threshold_(threshold) {
     const DecodedImage first = decode(names_[0]);
     width_ = first.width();
     height_ = first.height();
     has_colors_ = first.channels() >= 3;
     const VolumeSize size{static_cast<std::uint64_t>(width_), static_cast<std::uint64_t>(height_),
-                          names_.size()};
+                          place_of(names_.size() - 1) + 1};
     check_volume_size(folder_, size);
     grid_.levels = levels_of(size);
     if (first.channels() == 4) has_opaque_alpha_ = are_opaque();
@@ -100,7 +103,7 @@ class PngSlices : public VoxelSource {
   bool has_colors() const override { return has_colors_; }
   std::optional<Grid> grid() const override { return grid_; }
   std::vector<std::string> warnings() const override {
-    const std::string missing = missing_slices(names_);
+    const std::string missing = numbered_ ? "" : missing_slices(names_);
     if (missing.empty()) return {};
     return {missing};
   }
@@ -111,9 +114,9 @@ class PngSlices : public VoxelSource {
       const DecodedImage image = decode(names_[z]);
       check(image, names_[z]);
       if (threshold_)
-        visit_slice(image, z, IsAtLeast<std::uint16_t>(*threshold_), voxels);
+        visit_slice(image, place_of(z), IsAtLeast<std::uint16_t>(*threshold_), voxels);
       else
-        visit_slice(image, z, IsNotZero<std::uint16_t>(), voxels);
+        visit_slice(image, place_of(z), IsNotZero<std::uint16_t>(), voxels);
     }
     voxels.finish();
   }
@@ -149,8 +152,17 @@ class PngSlices : public VoxelSource {
     });
   }
 
+  /// Returns the place of a slice along z.
+  std::uint64_t place_of(std::size_t slice) const {
+    if (!numbered_) return slice;
+    const std::optional<std::int64_t> number = last_number(names_[slice]);
+    if (!number)
+      throw Error((folder_ / names_[slice]).string(), "", "has no number that tells its place");
+    return static_cast<std::uint64_t>(*number);
+  }
+
   template <class Test>
-  void visit_slice(const DecodedImage& image, std::size_t z, const Test& is_set,
+  void visit_slice(const DecodedImage& image, std::uint64_t z, const Test& is_set,
                    BatchedVoxels& voxels) const {
     const int channels = image.channels();
     const bool has_8_bits = image.row_bytes() == static_cast<std::size_t>(image.width()) *
@@ -178,6 +190,7 @@ class PngSlices : public VoxelSource {
 
   std::filesystem::path folder_;
   std::vector<std::string> names_;
+  bool numbered_;
   std::optional<double> threshold_;
   int width_ = 0, height_ = 0;
   bool has_colors_ = false;
@@ -205,8 +218,8 @@ bool is_before_by_numbers(std::string_view a, std::string_view b) {
 }
 
 std::unique_ptr<VoxelSource> open_png_slices(const std::filesystem::path& folder,
-                                             std::optional<double> threshold) {
-  return std::make_unique<PngSlices>(folder, threshold);
+                                             std::optional<double> threshold, bool numbered) {
+  return std::make_unique<PngSlices>(folder, threshold, numbered);
 }
 
 }  // namespace voxdag
