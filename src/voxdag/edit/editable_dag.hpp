@@ -124,6 +124,7 @@ class EditableDag {
   void push(Version version);
   bool has_values() const { return !attributes_.is_empty(); }
   void check(const EditPaint& paint) const;
+  std::uint32_t join_stamp(std::uint32_t root, const SvdagView& voxels, bool adds);
   /// Gives values to the voxels that `version` has and the root `before` has not. The voxels that
   /// were nearest in the current version have what `paint` lacks: nearest to the middle of `shape`,
   /// or if it is null, to each new voxel.
