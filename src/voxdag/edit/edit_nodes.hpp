@@ -61,6 +61,7 @@ class EditNodes {
 
   const std::uint32_t* words(std::uint32_t node) const { return words_.data() + node; }
   std::uint64_t block(std::uint32_t node) const { return blocks_.data()[node]; }
+  const std::uint64_t* blocks(std::uint32_t first) const { return blocks_.data() + first; }
   /// Returns child `index` of a node of a level below L-2; kNone if it has none or is kNone.
   std::uint32_t child(std::uint32_t node, int index) const {
     if (node == kNone || (child_mask(words(node)) >> index & 1) == 0) return kNone;
