@@ -134,6 +134,43 @@ TEST(EditableDag, KeepsColorsOfVoxelsAndGivesNewOnesTheirs) {
   }
 }
 
+TEST(EditableDag, SavesTheValuesThatVoxelsHave) {
+  for (const int finest : {4, 3, 2, 1}) {
+    RandomEdits random(4, static_cast<unsigned>(finest));
+    const Svdag base = brute_svdag(4, random_voxels(4, 400, 5));
+    const NumberColors colors(base.view(), finest);
+    EditableDag dag(colors.view());
+    EditModel model(4, {});
+    for (int i = 0; i < 12; ++i) {
+      edit_both(random, dag, model, true);
+      const EditSnapshot snapshot = dag.snapshot();
+      const Svdag saved = snapshot.svdag();
+      const DagAttributes attributes = snapshot.attributes(saved.view());
+      const ColoredDagView view{saved.view(), attributes.view()};
+      if (saved.view().is_empty()) continue;
+      LookReader live(snapshot.values()), stored(view);
+      model.for_each([&](Vec3i v) {
+        if (!svdag_contains(saved.view(), v, 4)) return;
+        const VoxelLook a = live.read(v, 4), b = stored.read(v, 4);
+        ASSERT_EQ(a.color, b.color) << "finest level " << finest << ", edit " << i;
+        ASSERT_EQ(a.material, b.material);
+        ASSERT_EQ(pack_normal(a.normal), pack_normal(b.normal));
+      });
+      if (i % 3 == 0) dag.undo();
+    }
+    // Without edits, all cells keep their values.
+    while (dag.undo()) {
+    }
+    const DagAttributes same = dag.snapshot().attributes(base.view());
+    LookReader before(colors.view()), after(ColoredDagView{base.view(), same.view()});
+    for (int level = 0; level <= finest; ++level)
+      for (int i = 0; i < 1 << (3 * level); ++i) {
+        const Vec3i cell = morton_decode(static_cast<std::uint64_t>(i));
+        ASSERT_EQ(before.read(cell, level).color, after.read(cell, level).color);
+      }
+  }
+}
+
 TEST(EditableDag, TakesTheColorOfTheNearestVoxelIfNoneIsGiven) {
   const std::vector<Vec3i> voxels{{0, 0, 0}, {15, 15, 15}};
   const Svdag base = brute_svdag(4, voxels);

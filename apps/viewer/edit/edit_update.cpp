@@ -33,7 +33,7 @@ std::string EditUpdate::bytes(const EditNodes& from, const EditValues& of_values
       append(bytes, ends, 2);
     }
   for (const EditRun& run : nodes.words) append(bytes, from.words(number(run.first)), run.count);
-  for (const EditRun& run : nodes.blocks) append(bytes, from.blocks(number(run.first)), run.count);
+  for (const EditRun& run : nodes.blocks) append(bytes, from.address(number(run.first)), run.count);
   for (const EditRun& run : values)
     append(bytes, of_values.view(kStoredValue).words + run.first, run.count);
   return bytes;

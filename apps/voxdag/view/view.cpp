@@ -1,6 +1,7 @@
 /// `voxdag view`: shows a DAG in the browser.
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
@@ -8,7 +9,6 @@
 #include "view/page_view.hpp"
 #include "view/serve_scene.hpp"
 #include "view/shown_scene.hpp"
-#include "voxdag/file/model/edited.hpp"
 #include "voxdag/file/vdag_container.hpp"
 
 namespace voxdag::cli {
@@ -44,9 +44,12 @@ void edit(const ViewArguments& arguments, const std::filesystem::path& output, S
   const ReducedDag& dag = scene.dag();
   const Work work(scene.memory(), &session.progress);
   const auto save = [&](const EditSnapshot& version, const std::filesystem::path& path) {
-    DagModel model = edited(dag.metadata(), version.svdag(work), dag.metadata().grid,
-                            "edits in the viewer", work);
-    model.set_presentation(dag.metadata().presentation);
+    VdagMetadata metadata = dag.metadata();
+    std::string& edits = metadata.build["edits"];
+    edits += (edits.empty() ? "" : "; ") + std::string("in the viewer");
+    Svdag voxels = version.svdag(work);
+    DagAttributes attributes = version.attributes(voxels.view(), {}, work);
+    const DagModel model(std::move(voxels), std::move(attributes), std::move(metadata), work);
     model.save(path, is_compact, work);
   };
   EditSession editing({dag.dag(), dag.attributes()}, dag.metadata().grid, output, save, work);

@@ -14,6 +14,8 @@ namespace {
 /// Memory is counted in the steps in which it becomes resident.
 constexpr std::uint64_t kStep = kHugePage;
 constexpr std::uint64_t kMaxBlocks = 0xFFFFFFFFull;
+/// A writer takes runs of so many words and blocks.
+constexpr std::uint32_t kRunWords = 1024, kRunBlocks = 512;
 /// The base is hashed in parts of about this many words.
 constexpr std::uint64_t kPartWords = 1 << 16;
 
@@ -76,6 +78,11 @@ class SlotFiller {
   std::uint64_t next_ = 0;
 };
 
+/// Shortens a run to end at `end`, if it reaches beyond.
+void trim_run(EditRun& run, std::uint64_t end) {
+  if (run.first + run.count > end) run.count = end > run.first ? end - run.first : 0;
+}
+
 }  // namespace
 
 EditNodes::EditNodes(const SvdagView& base, Work work) : work_(work) {
@@ -94,7 +101,7 @@ EditNodes::EditNodes(const SvdagView& base, Work work) : work_(work) {
   blocks_end_ = base.leaf_block_count;
   full_.fill(kNone);
   for (int level = 0; level <= base.levels - 2; ++level) {
-    tables_.emplace_back(work.memory);
+    tables_.push_back(std::make_unique<SharedNumberTable>(work.memory));
     hash_base(level);
   }
 }
@@ -153,87 +160,184 @@ SvdagView EditNodes::view(std::uint32_t root) const {
   return view;
 }
 
-template <class IsEqual, class Add>
-std::uint32_t EditNodes::find_or_add(int level, std::uint64_t hash, const IsEqual& is_equal,
-                                     const Add& add) {
-  PageVector<std::uint64_t>& slots = base_slots_[static_cast<std::size_t>(level)];
-  std::uint64_t found = 0;
-  NumberSlots{slots.data(), slots.size()}.find(NumberSlots::tag_of(hash), is_equal, found);
-  if (found != 0) return NumberSlots::number_of(found);
-  return tables_[static_cast<std::size_t>(level)].find_or_add(hash, is_equal, add);
+EditNodes::Writer::~Writer() {
+  nodes_.give_back_words(words_);
+  nodes_.give_back_blocks(blocks_);
 }
 
-std::uint32_t EditNodes::intern(int level, const std::uint32_t (&children)[8]) {
-  std::uint32_t node[9];
+EditNodes::Writer::Pending EditNodes::Writer::node_of(const std::uint32_t (&children)[8]) {
+  Pending node;
+  node.words[0] = 0;
   std::uint32_t count = 1;
-  node[0] = 0;
   for (std::uint32_t i = 0; i < 8; ++i) {
     if (children[i] == kNone) continue;
-    node[0] |= 1u << i;
-    node[count++] = children[i];
+    node.words[0] |= 1u << i;
+    node.words[count++] = children[i];
   }
-  if (count == 1) return kNone;
-  return find_or_add(
-      level, hash_words(node, static_cast<int>(count)),
-      [&](std::uint32_t number) {
-        const std::uint32_t* const stored = words(number);
-        return stored[0] == node[0] && std::equal(node + 1, node + count, stored + 1);
+  if (count == 1) return node;
+  node.count = count;
+  node.hash = hash_words(node.words, static_cast<int>(count));
+  return node;
+}
+
+EditNodes::Writer::Pending EditNodes::Writer::block_of(std::uint64_t voxels) {
+  Pending node;
+  node.words[0] = static_cast<std::uint32_t>(voxels);
+  node.words[1] = static_cast<std::uint32_t>(voxels >> 32);
+  if (voxels == 0) return node;
+  node.count = 2;
+  node.hash = hash_words(node.words, 2);
+  return node;
+}
+
+void EditNodes::Writer::prefetch(int level, const Pending& node) const {
+  const auto& slots = nodes_.base_slots_[static_cast<std::size_t>(level)];
+  const NumberSlots base{const_cast<std::uint64_t*>(slots.data()), slots.size()};
+  __builtin_prefetch(base.slots + base.first_of(NumberSlots::tag_of(node.hash)));
+  nodes_.tables_[static_cast<std::size_t>(level)]->prefetch(node.hash);
+}
+
+void EditNodes::Writer::prefetch_found(int level, const Pending& node) const {
+  const auto& slots = nodes_.base_slots_[static_cast<std::size_t>(level)];
+  std::uint64_t found = 0;
+  NumberSlots{const_cast<std::uint64_t*>(slots.data()), slots.size()}.find(
+      NumberSlots::tag_of(node.hash), [](std::uint32_t) { return true; }, found);
+  std::uint32_t number = NumberSlots::number_of(found);
+  if (found == 0 && !nodes_.tables_[static_cast<std::size_t>(level)]->find_tag(node.hash, number))
+    return;
+  if (level == nodes_.levels() - 2)
+    __builtin_prefetch(nodes_.blocks_.data() + number);
+  else
+    __builtin_prefetch(nodes_.words(number));
+}
+
+std::uint32_t EditNodes::Writer::intern(int level, const Pending& node) {
+  if (node.count == 0) return kNone;
+  const bool is_leaf = level == nodes_.levels() - 2;
+  const std::uint64_t voxels = node.words[0] | std::uint64_t{node.words[1]} << 32;
+  const auto is_equal = [&](std::uint32_t number) {
+    if (is_leaf) return nodes_.block(number) == voxels;
+    const std::uint32_t* const stored = nodes_.words(number);
+    // If the first words are equal, the lengths are equal, so the other words may be read.
+    return stored[0] == node.words[0] &&
+           std::equal(node.words + 1, node.words + node.count, stored + 1);
+  };
+  PageVector<std::uint64_t>& slots = nodes_.base_slots_[static_cast<std::size_t>(level)];
+  std::uint64_t found = 0;
+  NumberSlots{slots.data(), slots.size()}.find(NumberSlots::tag_of(node.hash), is_equal, found);
+  if (found != 0) return NumberSlots::number_of(found);
+  SharedNumberTable& table = *nodes_.tables_[static_cast<std::size_t>(level)];
+  if (is_leaf)
+    return table.find_or_add(
+        node.hash, 1, is_equal,
+        [&] {
+          if (blocks_.next == blocks_.end) nodes_.take_blocks(blocks_);
+          nodes_.blocks_[blocks_.next] = voxels;
+          return blocks_.next;
+        },
+        [&] { ++blocks_.next; });
+  return table.find_or_add(
+      node.hash, node.count, is_equal,
+      [&] {
+        if (words_.end - words_.next < node.count) nodes_.take_words(words_, node.count);
+        std::memcpy(nodes_.words_.data() + words_.next, node.words, node.count * 4);
+        return words_.next;
       },
-      [&] { return add_words(node, count); });
+      [&] { words_.next += node.count; });
 }
 
-std::uint32_t EditNodes::intern_block(std::uint64_t voxels) {
-  if (voxels == 0) return kNone;
-  return find_or_add(
-      levels() - 2, hash_block(voxels),
-      [&](std::uint32_t number) { return block(number) == voxels; },
-      [&] { return add_block(voxels); });
+void EditNodes::add_full() {
+  if (full(0) != kNone) return;
+  Writer writer(*this);
+  std::uint32_t node = writer.intern_block(~std::uint64_t{0});
+  full_[static_cast<std::size_t>(levels() - 2)] = node;
+  for (int level = levels() - 3; level >= 0; --level) {
+    std::uint32_t children[8];
+    std::fill_n(children, 8, node);
+    full_[static_cast<std::size_t>(level)] = node = writer.intern(level, children);
+  }
 }
 
-std::uint32_t EditNodes::full(int level) {
-  std::uint32_t& node = full_[static_cast<std::size_t>(level)];
-  if (node != kNone) return node;
-  if (level == levels() - 2) return node = intern_block(~std::uint64_t{0});
-  std::uint32_t children[8];
-  std::fill_n(children, 8, full(level + 1));
-  return node = intern(level, children);
+void EditNodes::FreeRuns::add(Run run) {
+  if (run.next == run.end) return;
+  lists[std::min(9u, run.end - run.next)].push_back(run);
+  count += run.end - run.next;
 }
 
-std::uint32_t EditNodes::add_words(const std::uint32_t* words, std::uint32_t count) {
-  std::uint32_t at = 0;
-  if (auto& free = free_words_[count]; !free.empty()) {
-    at = free.back();
-    free.pop_back();
-    unused_words_ -= count;
-  } else {
-    if (words_end_ + count > kMaxPlainWords)
+EditNodes::Run EditNodes::FreeRuns::take(std::uint32_t least, std::uint32_t most) {
+  for (std::size_t size = least; size < lists.size(); ++size) {
+    if (lists[size].empty()) continue;
+    Run run = lists[size].back();
+    lists[size].pop_back();
+    count -= run.end - run.next;
+    if (run.end - run.next > most) {
+      add({run.next + most, run.end});
+      run.end = run.next + most;
+    }
+    return run;
+  }
+  return {};
+}
+
+void EditNodes::take_words(Run& run, std::uint32_t count) {
+  give_back_words(run);
+  const std::lock_guard guard(mutex_);
+  run = free_words_.take(count, kRunWords);
+  if (run.next == run.end) {
+    if (words_end_ + kRunWords > kMaxPlainWords)
       throw Error(
           "the DAG is too large: its nodes have more words than 32-bit pointers can address");
-    count_memory(words_end_ + count, blocks_end_);
-    at = static_cast<std::uint32_t>(words_end_);
-    words_end_ += count;
+    count_memory(words_end_ + kRunWords, blocks_end_);
+    const auto begin = static_cast<std::uint32_t>(words_end_);
+    run = {begin, begin + kRunWords};
+    words_end_ += kRunWords;
   }
-  std::memcpy(words_.data() + at, words, count * sizeof(std::uint32_t));
-  note_run(changes_.words, at, count);
-  ++added_nodes_;
-  return at;
+  note_run(changes_.words, run.next, run.end - run.next);
 }
 
-std::uint32_t EditNodes::add_block(std::uint64_t voxels) {
-  std::uint32_t at = 0;
-  if (!free_blocks_.empty()) {
-    at = free_blocks_.back();
-    free_blocks_.pop_back();
-  } else {
-    if (blocks_end_ == kMaxBlocks)
+void EditNodes::take_blocks(Run& run) {
+  const std::lock_guard guard(mutex_);
+  run = free_blocks_.take(1, kRunBlocks);
+  if (run.next == run.end) {
+    if (blocks_end_ + kRunBlocks > kMaxBlocks)
       throw Error("the DAG is too large: it has more leaf blocks than 32-bit pointers can address");
-    count_memory(words_end_, blocks_end_ + 1);
-    at = static_cast<std::uint32_t>(blocks_end_++);
+    count_memory(words_end_, blocks_end_ + kRunBlocks);
+    const auto begin = static_cast<std::uint32_t>(blocks_end_);
+    run = {begin, begin + kRunBlocks};
+    blocks_end_ += kRunBlocks;
   }
-  blocks_[at] = voxels;
-  note_run(changes_.blocks, at, 1);
-  ++added_nodes_;
-  return at;
+  note_run(changes_.blocks, run.next, run.end - run.next);
+}
+
+void EditNodes::give_back_words(Run& run) {
+  if (run.next == run.end) return;
+  const std::lock_guard guard(mutex_);
+  if (run.end == words_end_) {
+    words_end_ = run.next;
+    if (!changes_.words.empty()) trim_run(changes_.words.back(), words_end_);
+  } else {
+    words_[run.next] = kUnused + (run.end - run.next);
+    free_words_.add(run);
+  }
+  run = {};
+}
+
+void EditNodes::give_back_blocks(Run& run) {
+  if (run.next == run.end) return;
+  const std::lock_guard guard(mutex_);
+  if (run.end == blocks_end_) {
+    blocks_end_ = run.next;
+    if (!changes_.blocks.empty()) trim_run(changes_.blocks.back(), blocks_end_);
+  } else {
+    free_blocks_.add(run);
+  }
+  run = {};
+}
+
+std::uint64_t EditNodes::added_nodes() const {
+  std::uint64_t count = collected_nodes_;
+  for (const auto& table : tables_) count += table->count();
+  return count;
 }
 
 void EditNodes::count_memory(std::uint64_t words_end, std::uint64_t blocks_end) {
@@ -260,7 +364,7 @@ void EditNodes::mark(int level, std::uint32_t node) {
 bool EditNodes::is_marked(int level, std::uint32_t node) const {
   const bool is_leaf = level == levels() - 2;
   const std::uint64_t base = is_leaf ? base_.leaf_block_count : base_.node_words();
-  return node < base || (is_leaf ? block_marks_ : word_marks_)[node - base];
+  return node == kNone || node < base || (is_leaf ? block_marks_ : word_marks_)[node - base];
 }
 
 void EditNodes::collect(std::span<const std::uint32_t> roots) {
@@ -268,29 +372,43 @@ void EditNodes::collect(std::span<const std::uint32_t> roots) {
   word_marks_.assign(words_end_ - first_word, false);
   block_marks_.assign(blocks_end_ - first_block, false);
   for (const std::uint32_t root : roots) mark(0, root);
+  const std::uint64_t nodes_before = added_nodes();
   for (int level = 0; level < levels() - 1; ++level) {
-    if (std::uint32_t& full = full_[static_cast<std::size_t>(level)];
-        full != kNone && !is_marked(level, full))
-      full = kNone;
-    tables_[static_cast<std::size_t>(level)].retain(
+    if (!is_marked(level, full(level))) full_.fill(kNone);
+    tables_[static_cast<std::size_t>(level)]->retain(
         [&](std::uint32_t number) { return is_marked(level, number); });
   }
-  for (auto& free : free_words_) free.clear();
-  unused_words_ = 0;
-  for (std::uint64_t at = first_word; at < words_end_;) {
-    std::uint32_t& first = words_[at];
+  collected_nodes_ += nodes_before - added_nodes();
+  free_words_ = {};
+  Run unused;
+  for (std::uint64_t at = first_word; at <= words_end_;) {
+    const bool is_end = at == words_end_;
+    if (is_end || word_marks_[at - first_word]) {
+      if (unused.next != unused.end) words_[unused.next] = kUnused + (unused.end - unused.next);
+      free_words_.add(unused);
+      unused = {};
+    }
+    if (is_end) break;
+    const std::uint32_t first = words_[at];
     const std::uint32_t count =
         first > kUnused ? first - kUnused : static_cast<std::uint32_t>(words_of(&first));
     if (!word_marks_[at - first_word]) {
-      first = kUnused + count;
-      free_words_[count].push_back(static_cast<std::uint32_t>(at));
-      unused_words_ += count;
+      if (unused.next == unused.end) unused.next = static_cast<std::uint32_t>(at);
+      unused.end = static_cast<std::uint32_t>(at) + count;
     }
     at += count;
   }
-  free_blocks_.clear();
-  for (std::uint64_t at = first_block; at < blocks_end_; ++at)
-    if (!block_marks_[at - first_block]) free_blocks_.push_back(static_cast<std::uint32_t>(at));
+  free_blocks_ = {};
+  unused = {};
+  for (std::uint64_t at = first_block; at <= blocks_end_; ++at) {
+    if (at < blocks_end_ && !block_marks_[at - first_block]) {
+      if (unused.next == unused.end) unused.next = static_cast<std::uint32_t>(at);
+      unused.end = static_cast<std::uint32_t>(at) + 1;
+      continue;
+    }
+    free_blocks_.add(unused);
+    unused = {};
+  }
   word_marks_ = {};
   block_marks_ = {};
 }

@@ -8,16 +8,19 @@
 /// added. Nodes are hash-consed: a level has no two equal nodes, in the base and behind it.
 ///
 /// collect() marks what is reachable, and later nodes take the places of the others. Nodes never
-/// move. An unused place begins with a word that is no child mask: kUnused + its number of words.
+/// move. An unused run of words begins with one that is no child mask: kUnused + the run's length.
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "voxdag/core/number_table.hpp"
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/work.hpp"
+#include "voxdag/core/shared_number_table.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
@@ -61,29 +64,29 @@ class EditNodes {
 
   const std::uint32_t* words(std::uint32_t node) const { return words_.data() + node; }
   std::uint64_t block(std::uint32_t node) const { return blocks_.data()[node]; }
-  const std::uint64_t* blocks(std::uint32_t first) const { return blocks_.data() + first; }
+  const std::uint64_t* address(std::uint32_t block) const { return blocks_.data() + block; }
   /// Returns child `index` of a node of a level below L-2; kNone if it has none or is kNone.
   std::uint32_t child(std::uint32_t node, int index) const {
     if (node == kNone || (child_mask(words(node)) >> index & 1) == 0) return kNone;
     return child_pointer(words(node), index);
   }
 
-  /// Returns the node of `level`, below L-2, with these children, kNone for one that is missing;
-  /// kNone if all are missing. Throws Error if the nodes outgrow 32-bit pointers, and OverMemory.
-  std::uint32_t intern(int level, const std::uint32_t (&children)[8]);
-  /// Returns the leaf block of these voxels; kNone if there are none. Throws like intern().
-  std::uint32_t intern_block(std::uint64_t voxels);
-  /// Returns the node of `level` that has all voxels.
-  std::uint32_t full(int level);
+  /// Adds nodes. Each thread has its own, in whose run of memory its new nodes lie.
+  class Writer;
+
+  /// Returns the node of `level` that has all voxels. add_full() must have been called before.
+  std::uint32_t full(int level) const { return full_[static_cast<std::size_t>(level)]; }
+  /// Adds the nodes that have all voxels. Throws like Writer::intern().
+  void add_full();
 
   /// The number of bytes of nodes behind the base, unused places included.
   std::uint64_t added_bytes() const {
     return (words_end_ - base_.node_words()) * 4 + (blocks_end_ - base_.leaf_block_count) * 8;
   }
   /// The number of bytes in unused places.
-  std::uint64_t unused_bytes() const { return unused_words_ * 4 + free_blocks_.size() * 8; }
+  std::uint64_t unused_bytes() const { return free_words_.count * 4 + free_blocks_.count * 8; }
   /// The number of nodes that were ever added.
-  std::uint64_t added_nodes() const { return added_nodes_; }
+  std::uint64_t added_nodes() const;
   /// One more than the last word or block that was ever written.
   std::uint64_t words_end() const { return words_end_; }
   std::uint64_t blocks_end() const { return blocks_end_; }
@@ -98,11 +101,27 @@ class EditNodes {
  private:
   static constexpr std::uint32_t kUnused = 256;
 
-  template <class IsEqual, class Add>
-  std::uint32_t find_or_add(int level, std::uint64_t hash, const IsEqual& is_equal, const Add& add);
-  std::uint32_t add_words(const std::uint32_t* words, std::uint32_t count);
-  std::uint32_t add_block(std::uint64_t voxels);
+  /// A run of words or blocks that one writer fills.
+  struct Run {
+    std::uint32_t next = 0, end = 0;
+  };
+  /// Unused runs. List i < 9 has those of i words or blocks, list 9 those of 9 and more.
+  struct FreeRuns {
+    std::array<std::vector<Run>, 10> lists;
+    std::uint64_t count = 0;  ///< Words or blocks.
+
+    void add(Run run);
+    /// Takes a run of `least` to `most` words, or one of none.
+    Run take(std::uint32_t least, std::uint32_t most);
+  };
+
   void hash_base(int level);
+  /// Gives a writer a run of at least `count` words, or of at least one block.
+  void take_words(Run& run, std::uint32_t count);
+  void take_blocks(Run& run);
+  /// Takes back what is left of a run.
+  void give_back_words(Run& run);
+  void give_back_blocks(Run& run);
   void mark(int level, std::uint32_t node);
   bool is_marked(int level, std::uint32_t node) const;
   /// Counts memory up to these ends.
@@ -113,15 +132,55 @@ class EditNodes {
   PageVector<std::uint64_t> blocks_;
   SvdagView base_;
   MemoryReservation memory_;
-  std::uint64_t words_end_ = 0, blocks_end_ = 0, added_nodes_ = 0, unused_words_ = 0;
+  std::mutex mutex_;  ///< Of the members up to changes_.
+  std::uint64_t words_end_ = 0, blocks_end_ = 0;
+  FreeRuns free_words_, free_blocks_;
+  EditChanges changes_;
   /// The slots of the base's nodes, and a table of the others, for each level.
   std::vector<PageVector<std::uint64_t>> base_slots_;
-  std::vector<NumberTable> tables_;
+  std::vector<std::unique_ptr<SharedNumberTable>> tables_;
+  std::uint64_t collected_nodes_ = 0;
   std::array<std::uint32_t, kMaxLevels> full_;
-  std::array<std::vector<std::uint32_t>, 10> free_words_;  ///< By number of words.
-  std::vector<std::uint32_t> free_blocks_;
   std::vector<bool> word_marks_, block_marks_;  ///< Behind the base, during collect().
-  EditChanges changes_;
+};
+
+class EditNodes::Writer {
+ public:
+  explicit Writer(EditNodes& nodes) : nodes_(nodes) {}
+  /// Gives the rest of its memory back.
+  ~Writer();
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  /// A node to look up: its words, and their hash.
+  struct Pending {
+    std::uint32_t words[9];
+    std::uint32_t count = 0;  ///< 0: a cell without voxels.
+    std::uint64_t hash = 0;
+  };
+  /// Returns the words of a node with these children, kNone for one that is missing.
+  static Pending node_of(const std::uint32_t (&children)[8]);
+  /// Returns the words of a leaf block.
+  static Pending block_of(std::uint64_t voxels);
+
+  /// Starts loading what intern() reads first, and then what it reads next. A caller with many
+  /// nodes calls each for all of them, so that loads overlap.
+  void prefetch(int level, const Pending& node) const;
+  void prefetch_found(int level, const Pending& node) const;
+  /// Returns the node of `level`; adds it if it is new. kNone if it is without voxels. Throws Error
+  /// if the nodes outgrow 32-bit pointers, and OverMemory.
+  std::uint32_t intern(int level, const Pending& node);
+  std::uint32_t intern(int level, const std::uint32_t (&children)[8]) {
+    return intern(level, node_of(children));
+  }
+  std::uint32_t intern_block(std::uint64_t voxels) {
+    return intern(nodes_.levels() - 2, block_of(voxels));
+  }
+  const EditNodes& nodes() const { return nodes_; }
+
+ private:
+  EditNodes& nodes_;
+  Run words_, blocks_;
 };
 
 }  // namespace voxdag

@@ -6,9 +6,11 @@
 #include <unordered_map>
 #include <utility>
 
+#include "voxdag/algebra/attributes/derive_attributes.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/shift.hpp"
+#include "voxdag/edit/edited_source.hpp"
 #include "voxdag/edit/filter_ball.hpp"
 #include "voxdag/edit/shape_edit.hpp"
 #include "voxdag/edit/stamp_edit.hpp"
@@ -75,6 +77,14 @@ Vec3d middle_of_cell(Vec3i cell, int level, int levels) {
 }  // namespace
 
 Svdag EditSnapshot::svdag(Work work) const { return crop(view(), whole_grid(view().levels), work); }
+
+DagAttributes EditSnapshot::attributes(const SvdagView& dag, const CoarsenBounds& bounds,
+                                       Work work) const {
+  const ColoredDagView& values = version_->values;
+  const EditedSource source(*version_->nodes, *version_->of_values, version_->root, values.overlays,
+                            values.attributes);
+  return derive_attributes(dag, values.attributes.index.finest_level, source, bounds, work);
+}
 
 EditableDag::EditableDag(const ColoredDagView& base, EditOptions options, Work work)
     : work_(work),
@@ -189,6 +199,12 @@ void EditableDag::paint_new(Version& version, std::uint32_t before_root, const E
   });
 }
 
+std::uint32_t EditableDag::join_stamp(std::uint32_t root, const SvdagView& voxels, bool adds) {
+  if (adds) nodes_->add_full();
+  EditNodes::Writer writer(*nodes_);
+  return StampEdit(writer, voxels, adds).run(root);
+}
+
 void EditableDag::stamp(const SvdagView& voxels, StampMode mode, const LookView& look,
                         const EditPaint& paint, const Box3i& box) {
   if (voxels.levels != levels())
@@ -207,7 +223,7 @@ void EditableDag::stamp(const SvdagView& voxels, StampMode mode, const LookView&
       version.root = ShapeEdit(*nodes_, slabs, false).run(version.root);
     }
     const std::uint32_t emptied = version.root;
-    version.root = StampEdit(*nodes_, voxels, mode != StampMode::kRemove).run(version.root);
+    version.root = join_stamp(version.root, voxels, mode != StampMode::kRemove);
     if (mode == StampMode::kRemove) return;
     if (look.is_empty()) return paint_new(version, emptied, paint, nullptr);
     LookReader reader(look);
@@ -245,10 +261,10 @@ void EditableDag::copy(const Box3i& box, Vec3i to, bool moves) {
   apply([&](Version& version) {
     const EditSnapshot before = snapshot();
     const Svdag part = crop(before.view(), box, work_);
-    if (moves) version.root = StampEdit(*nodes_, part.view(), false).run(version.root);
+    if (moves) version.root = join_stamp(version.root, part.view(), false);
     const std::uint32_t emptied = version.root;
     const Svdag moved = shift(part.view(), offset, levels(), work_);
-    version.root = StampEdit(*nodes_, moved.view(), true).run(version.root);
+    version.root = join_stamp(version.root, moved.view(), true);
     if (!has_values()) return;
     // The voxel in the middle of a cell stands for the cell.
     const int bits = levels() - attributes_.index.finest_level;
@@ -265,7 +281,7 @@ void EditableDag::filter(const BallShape& ball, BallFilter filter) {
   apply([&](Version& version) {
     const Svdag voxels = filter_ball(versions_[now_]->view, ball, filter, work_);
     version.root = ShapeEdit(*nodes_, ball, false).run(version.root);
-    version.root = StampEdit(*nodes_, voxels.view(), true).run(version.root);
+    version.root = join_stamp(version.root, voxels.view(), true);
     paint_new(version, versions_[now_]->root, {}, nullptr);
   });
 }

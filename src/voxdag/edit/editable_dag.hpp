@@ -18,6 +18,7 @@
 #include "voxdag/edit/edit_values.hpp"
 #include "voxdag/edit/filter_ball.hpp"
 #include "voxdag/edit/shapes.hpp"
+#include "voxdag/stored/attributes/coarsen_attributes.hpp"
 #include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
 
@@ -53,6 +54,12 @@ class EditSnapshot {
   /// Returns the minimal DAG, in canonical order, of the voxels: the bytes of a file depend on the
   /// voxels alone. Throws OverMemory and Cancelled.
   Svdag svdag(Work work = {}) const;
+  /// Returns the attributes of the cells of `dag`, which svdag() returned. Values that no edit
+  /// changed are stored exactly as they were, but for `bounds`. Cells with changed voxels get the
+  /// mean of their children (algebra/attributes/derive_attributes.hpp). Empty if the base has none.
+  /// Throws OverMemory and Cancelled.
+  DagAttributes attributes(const SvdagView& dag, const CoarsenBounds& bounds = {},
+                           Work work = {}) const;
 
  private:
   friend class EditableDag;
@@ -124,6 +131,7 @@ class EditableDag {
   void push(Version version);
   bool has_values() const { return !attributes_.is_empty(); }
   void check(const EditPaint& paint) const;
+  std::uint32_t join_stamp(std::uint32_t root, const SvdagView& voxels, bool adds);
   /// Gives values to the voxels that `version` has and the root `before` has not. The voxels that
   /// were nearest in the current version have what `paint` lacks: nearest to the middle of `shape`,
   /// or if it is null, to each new voxel.

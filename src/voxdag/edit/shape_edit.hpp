@@ -1,12 +1,19 @@
 #pragma once
 /// Adds a shape to a DAG, removes it, and gives values to the voxels of a shape.
 ///
-/// Recursion from the root. A cell outside of the shape keeps its node, and a cell inside becomes a
-/// full node or none, at once; so the cost follows the cells that the surface of the shape cuts.
-/// If voxels are removed, only cells with voxels count; if added, only cells that are not full.
+/// A cell outside of the shape keeps its node, and a cell inside becomes a full node or none, at
+/// once; so the cost follows the cells that the surface of the shape cuts. If voxels are removed,
+/// only cells with voxels count; if added, only cells that are not full.
+///
+/// Cells are visited breadth first, level by level, and joined from the finest level up: the loads
+/// of all nodes of a level overlap. Large shapes are divided into cells for many threads, each of
+/// which is visited in this way.
 #include <algorithm>
+#include <array>
+#include <vector>
 
 #include "voxdag/core/morton.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/edit/edit_nodes.hpp"
 #include "voxdag/edit/edit_values.hpp"
 #include "voxdag/edit/shapes.hpp"
@@ -18,37 +25,163 @@ template <class Shape>
 class ShapeEdit {
  public:
   ShapeEdit(EditNodes& nodes, const Shape& shape, bool adds)
-      : nodes_(nodes), shape_(shape), adds_(adds), levels_(nodes.levels()) {}
+      : nodes_(nodes), shape_(shape), adds_(adds), levels_(nodes.levels()) {
+    if (adds_) nodes_.add_full();
+  }
 
-  /// Returns the root after the edit. Throws what EditNodes::intern() throws.
-  std::uint32_t run(std::uint32_t root) { return edit(0, root, {}); }
+  /// Returns the root after the edit. Throws what EditNodes::Writer::intern() throws.
+  std::uint32_t run(std::uint32_t root) {
+    std::uint32_t result = 0;
+    if (is_decided(0, root, {}, result)) return result;
+    EditNodes::Writer writer(nodes_);
+    Frontiers upper(levels_);
+    upper.start(0, root, {});
+    // Divides the shape into tasks.
+    int level = 0;
+    while (level + kTaskLevels < levels_ - 1 && upper.at(level).size() < kTasks)
+      divide(upper, level), ++level;
+    std::vector<Cell>& tasks = upper.at(level);
+    if (tasks.size() < kParallel) {
+      Frontiers below(levels_);
+      for (Cell& task : tasks) task.result = solve(writer, below, level, task);
+    } else {
+      parallel_for(tasks.size(), [&](std::size_t i) {
+        EditNodes::Writer own(nodes_);
+        Frontiers below(levels_);
+        tasks[i].result = solve(own, below, level, tasks[i]);
+      });
+    }
+    while (level-- > 0) join(writer, upper, level);
+    return upper.at(0)[0].result;
+  }
 
  private:
-  std::uint32_t edit(int level, std::uint32_t node, Vec3i origin) {
-    if (node == (adds_ ? nodes_.full(level) : EditNodes::kNone)) return node;
-    switch (shape_.place(origin, levels_ - level)) {
-      case CellPlace::kOutside:
-        return node;
-      case CellPlace::kInside:
-        return adds_ ? nodes_.full(level) : EditNodes::kNone;
-      default:
-        break;
-    }
-    if (level == levels_ - 2) {
-      const std::uint64_t before = node == EditNodes::kNone ? 0 : nodes_.block(node),
-                          of_shape = shape_.block(origin),
-                          after = adds_ ? before | of_shape : before & ~of_shape;
-      return after == before ? node : nodes_.intern_block(after);
-    }
-    const std::int32_t half = std::int32_t{1} << (levels_ - level - 1);
+  /// Tasks have at least 2^(kTaskLevels + 1) voxels a side. There are up to 8 kTasks.
+  static constexpr int kTaskLevels = 5;
+  static constexpr std::size_t kTasks = 64, kParallel = 32;
+  /// Cells of at most 2^(kBrickLevels + 1) voxels a side are visited breadth first.
+  static constexpr int kBrickLevels = 4;
+
+  /// A cell that the surface of the shape may cut.
+  struct Cell {
+    std::uint32_t node;
+    Vec3i origin;
+    std::uint32_t result = 0;
+    /// For each child its result if it is decided, else the number of its cell. Bit i of `open`: it
+    /// is not decided.
     std::uint32_t children[8];
-    bool is_changed = false;
-    for (int i = 0; i < 8; ++i) {
-      const std::uint32_t child = nodes_.child(node, i);
-      children[i] = edit(level + 1, child, origin + child_offset(i) * half);
-      is_changed |= children[i] != child;
+    std::uint32_t open = 0;
+    EditNodes::Writer::Pending pending;
+  };
+  /// The cells of each level.
+  class Frontiers {
+   public:
+    explicit Frontiers(int levels) : cells_(static_cast<std::size_t>(levels)) {}
+    std::vector<Cell>& at(int level) { return cells_[static_cast<std::size_t>(level)]; }
+    Cell& add(int level, std::uint32_t node, Vec3i origin) {
+      Cell& cell = at(level).emplace_back();
+      cell.node = node;
+      cell.origin = origin;
+      return cell;
     }
-    return is_changed ? nodes_.intern(level, children) : node;
+    void start(int level, std::uint32_t node, Vec3i origin) {
+      for (auto& cells : cells_) cells.clear();
+      add(level, node, origin);
+    }
+
+   private:
+    std::vector<std::vector<Cell>> cells_;
+  };
+
+  /// Sets `result` if the cell needs no look at its children.
+  bool is_decided(int level, std::uint32_t node, Vec3i origin, std::uint32_t& result) const {
+    result = node;
+    if (node == (adds_ ? nodes_.full(level) : EditNodes::kNone)) return true;
+    const CellPlace place = shape_.place(origin, levels_ - level);
+    if (place == CellPlace::kInside) result = adds_ ? nodes_.full(level) : EditNodes::kNone;
+    return place != CellPlace::kMixed;
+  }
+
+  /// Adds the children of all cells of a level that are not decided.
+  void divide(Frontiers& cells, int level) {
+    const std::int32_t half = std::int32_t{1} << (levels_ - level - 1);
+    for (Cell& cell : cells.at(level))
+      for (int i = 0; i < 8; ++i) {
+        const std::uint32_t child = nodes_.child(cell.node, i);
+        const Vec3i origin = cell.origin + child_offset(i) * half;
+        if (is_decided(level + 1, child, origin, cell.children[i])) continue;
+        cell.open |= 1u << i;
+        cell.children[i] = static_cast<std::uint32_t>(cells.at(level + 1).size());
+        cells.add(level + 1, child, origin);
+        if (child == EditNodes::kNone) continue;
+        __builtin_prefetch(level + 1 == levels_ - 2
+                               ? static_cast<const void*>(nodes_.address(child))
+                               : nodes_.words(child));
+      }
+  }
+
+  /// Sets the results of all cells of a level from those of the level below.
+  void join(EditNodes::Writer& writer, Frontiers& cells, int level) {
+    for (Cell& cell : cells.at(level)) {
+      bool is_changed = false;
+      for (int i = 0; i < 8; ++i) {
+        if ((cell.open >> i & 1) != 0)
+          cell.children[i] = cells.at(level + 1)[cell.children[i]].result;
+        is_changed |= cell.children[i] != nodes_.child(cell.node, i);
+      }
+      cell.result = cell.node;
+      cell.open = is_changed ? 1 : 0;
+      if (!is_changed) continue;
+      cell.pending = EditNodes::Writer::node_of(cell.children);
+      if (cell.pending.count != 0) writer.prefetch(level, cell.pending);
+    }
+    intern(writer, cells.at(level), level);
+  }
+
+  /// Looks the pending nodes of cells up: of those whose `open` is not 0.
+  void intern(EditNodes::Writer& writer, std::vector<Cell>& cells, int level) {
+    for (const Cell& cell : cells)
+      if (cell.open != 0 && cell.pending.count != 0) writer.prefetch_found(level, cell.pending);
+    for (Cell& cell : cells)
+      if (cell.open != 0) cell.result = writer.intern(level, cell.pending);
+  }
+
+  void edit_blocks(EditNodes::Writer& writer, std::vector<Cell>& cells) {
+    const int level = levels_ - 2;
+    for (Cell& cell : cells) {
+      const std::uint64_t before = cell.node == EditNodes::kNone ? 0 : nodes_.block(cell.node),
+                          of_shape = shape_.block(cell.origin),
+                          after = adds_ ? before | of_shape : before & ~of_shape;
+      cell.result = cell.node;
+      cell.open = after != before ? 1 : 0;
+      if (cell.open == 0) continue;
+      cell.pending = EditNodes::Writer::block_of(after);
+      if (after != 0) writer.prefetch(level, cell.pending);
+    }
+    intern(writer, cells, level);
+  }
+
+  /// Returns the node of a cell of `level` that is not decided, after the edit.
+  std::uint32_t solve(EditNodes::Writer& writer, Frontiers& cells, int level, const Cell& cell) {
+    if (level < levels_ - 2 - kBrickLevels) {
+      const std::int32_t half = std::int32_t{1} << (levels_ - level - 1);
+      std::uint32_t children[8];
+      bool is_changed = false;
+      for (int i = 0; i < 8; ++i) {
+        Cell child;
+        child.node = nodes_.child(cell.node, i);
+        child.origin = cell.origin + child_offset(i) * half;
+        if (!is_decided(level + 1, child.node, child.origin, children[i]))
+          children[i] = solve(writer, cells, level + 1, child);
+        is_changed |= children[i] != child.node;
+      }
+      return is_changed ? writer.intern(level, children) : cell.node;
+    }
+    cells.start(level, cell.node, cell.origin);
+    for (int below = level; below < levels_ - 2; ++below) divide(cells, below);
+    edit_blocks(writer, cells.at(levels_ - 2));
+    for (int above = levels_ - 3; above >= level; --above) join(writer, cells, above);
+    return cells.at(level)[0].result;
   }
 
   EditNodes& nodes_;

@@ -1,7 +1,6 @@
 #include "voxdag/edit/shapes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -107,19 +106,23 @@ CellPlace BallShape::place(Vec3i origin, int bits) const {
 
 std::uint64_t BallShape::block(Vec3i origin) const {
   const Vec3l first = centers_of(origin, 0).first - center;
-  std::array<std::array<std::int64_t, 4>, 3> squares;
+  std::int64_t squares[3][4];
   for (int axis = 0; axis < 3; ++axis)
     for (int k = 0; k < 4; ++k) {
       const std::int64_t d = first[axis] + k * kSubvoxels;
-      squares[static_cast<std::size_t>(axis)][static_cast<std::size_t>(k)] = d * d;
+      squares[axis][k] = d * d;
     }
-  const std::int64_t radius2 = radius * radius;
   std::uint64_t mask = 0;
-  for (int voxel = 0; voxel < 64; ++voxel) {
-    const auto k = [&](int axis) { return static_cast<std::size_t>(leaf_coordinate(voxel, axis)); };
-    mask |= std::uint64_t{squares[0][k(0)] + squares[1][k(1)] + squares[2][k(2)] <= radius2}
-            << voxel;
-  }
+  for (int z = 0; z < 4; ++z)
+    for (int y = 0; y < 4; ++y) {
+      // The voxels along x whose squared distance on this axis is at most `left`.
+      const std::int64_t left = radius * radius - squares[1][y] - squares[2][z];
+      const std::uint64_t row = std::uint64_t{squares[0][0] <= left} << leaf_bits(0, 0) |
+                                std::uint64_t{squares[0][1] <= left} << leaf_bits(1, 0) |
+                                std::uint64_t{squares[0][2] <= left} << leaf_bits(2, 0) |
+                                std::uint64_t{squares[0][3] <= left} << leaf_bits(3, 0);
+      mask |= row << (leaf_bits(y, 1) | leaf_bits(z, 2));
+    }
   return mask;
 }
 

@@ -12,13 +12,15 @@ namespace voxdag {
 /// the cost follows the different pairs.
 class StampEdit {
  public:
-  StampEdit(EditNodes& nodes, const SvdagView& stamp, bool adds)
-      : nodes_(nodes),
+  StampEdit(EditNodes::Writer& writer, const SvdagView& stamp, bool adds)
+      : nodes_(writer.nodes()),
+        writer_(writer),
         stamp_(stamp),
         adds_(adds),
-        known_(static_cast<std::size_t>(nodes.levels())) {}
+        known_(static_cast<std::size_t>(nodes_.levels())) {}
 
-  /// Returns the root after the edit. Throws what EditNodes::intern() throws.
+  /// Returns the root after the edit. EditNodes::add_full() must have been called if it adds.
+  /// Throws what EditNodes::Writer::intern() throws.
   std::uint32_t run(std::uint32_t root) { return join(0, root, stamp_.root()); }
 
  private:
@@ -28,7 +30,7 @@ class StampEdit {
     if (level == nodes_.levels() - 2) {
       const std::uint64_t before = node == EditNodes::kNone ? 0 : nodes_.block(node),
                           block = stamp_.block(stamp);
-      return nodes_.intern_block(adds_ ? before | block : before & ~block);
+      return writer_.intern_block(adds_ ? before | block : before & ~block);
     }
     const std::uint64_t key = std::uint64_t{node} << 32 | stamp;
     auto& known = known_[static_cast<std::size_t>(level)];
@@ -36,10 +38,11 @@ class StampEdit {
     std::uint32_t children[8];
     for (int i = 0; i < 8; ++i)
       children[i] = join(level + 1, nodes_.child(node, i), stamp_.child(level, stamp, i));
-    return known[key] = nodes_.intern(level, children);
+    return known[key] = writer_.intern(level, children);
   }
 
-  EditNodes& nodes_;
+  const EditNodes& nodes_;
+  EditNodes::Writer& writer_;
   SourceDag stamp_;
   const bool adds_;
   std::vector<std::unordered_map<std::uint64_t, std::uint32_t>> known_;
