@@ -9,6 +9,7 @@ uniform int u_show;            // SHOW_*
 uniform usampler2D u_node_instances, u_leaf_instances;
 uniform int u_color_bits, u_normal_bits;  // precision of the stored values; -1: none
 uniform usampler2D u_color_words, u_color_pages, u_normal_words, u_normal_pages;
+uniform uint u_color_overlay, u_normal_overlay;
 
 layout(location = 0) out vec4 out_start;   // where rays start, grid coordinates; w: the cell's side, 0 without a hit
 layout(location = 1) out vec4 out_normal;  // shading normal; w: depth in grid sides
@@ -75,13 +76,15 @@ void main() {
     face = normal;
 #ifdef HAS_LOOK
     if (u_finest >= 0) {
-      uint number = cellNumber(cell, hit.level);
-      if (u_color_bits >= 0) {
-        uvec3 rgb = readValue(u_color_words, u_color_pages, uint(u_color_bits), number);
-        color = float(rgb.x | rgb.y << 8u | rgb.z << 16u);
-      }
-      if (u_normal_bits >= 0) {
-        vec3 stored = vec3(ivec3(readValue(u_normal_words, u_normal_pages, uint(u_normal_bits), number)) - 128);
+      uint number;
+      uvec3 value;
+      bool is_stored = findNumber(cell, hit.level, number);
+      if (u_color_bits >= 0 &&
+          readLook(u_color_overlay, cell, hit.level, is_stored, number, u_color_words, u_color_pages, uint(u_color_bits), value))
+        color = float(value.x | value.y << 8u | value.z << 16u);
+      if (u_normal_bits >= 0 &&
+          readLook(u_normal_overlay, cell, hit.level, is_stored, number, u_normal_words, u_normal_pages, uint(u_normal_bits), value)) {
+        vec3 stored = vec3(ivec3(value) - 128);
         stored = stored == vec3(0.0) ? vec3(0.0, 1.0, 0.0) : normalize(stored);
         float facing = dot(stored, view);
         bool of_back = facing < -NORMAL_LEANING || (facing < 0.0 && dot(stored, entered) < -NORMAL_OPPOSITE);
