@@ -12,7 +12,7 @@ bool castRay(GridRay ray, float stop_start, float stop_per_t, out CellHit hit) {
   float root_exit = min(min(leave.x, leave.y), leave.z);
   for (int cells = 0; cells < MOST_STEPS; ++cells) {
     if (root_exit <= t) return false;
-    uint node = 0u, above = 0u;
+    uint node = u_root, above = 0u;
     uvec3 corner = uvec3(0x3F800000u);
     float exit_t = t;
     for (int level = 1; level <= DAG_MOST_LEVELS; ++level) {

@@ -50,6 +50,8 @@ BakedPage::BakedPage(const PageView& view)
     replace(index_, kEnd,
             std::string(kEnd) + "\n<script type=\"application/json\" id=\"settings\">" +
                 script_json(view.settings) + "</script>");
+  if (!view.edits)
+    std::erase_if(files_, [](const PageFile& file) { return file.path.starts_with("edit/"); });
   for (PageFile& file : files_)
     if (file.path == "index.html") file.bytes = index_;
 }

@@ -11,10 +11,12 @@ namespace voxdag {
 struct PageView {
   std::string settings;  ///< JSON as the page saves it: voxdag/render/film/view_settings.hpp.
   std::string title;     ///< Of the page, until it has read its settings.
+  bool edits = false;    ///< The page has the files of edit/.
   std::string poster;    ///< Data URL of a picture that is shown until the scene has arrived.
 };
 
-/// The files of the page, in which index.html has the view. The files refer to this object.
+/// The files of the page, in which index.html has the view; without those of edit/ unless the view
+/// edits. The files refer to this object.
 class BakedPage {
  public:
   explicit BakedPage(const PageView& view);

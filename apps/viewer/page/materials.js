@@ -69,7 +69,19 @@ function cellSum({ width, words, levelBegin, slotBegin }, level, word) {
 }
 
 /**
- * Returns the number of a cell that exists; a cell finer than the finest with attributes has that of its ancestor.
+ * Returns the value that edits gave to a cell, or null: the port of stored/attributes/value_overlay.hpp.
+ * @param {Uint32Array} words @param {number} root @param {Vec3} voxel  A voxel of the cell. @param {number} level @param {number} levels
+ * @param {boolean} isNew  Whether the file has no such cell: then values of parts of the cell stand for it.
+ */
+export function overlayAt(words, root, voxel, level, levels, isNew) {
+  const isWords = () => root !== 0 && root < 2 ** 31;
+  for (let l = 0; l < level && isWords(); ++l) root = words[8 * root + voxel.reduce((sum, v, a) => sum | (((v >>> (levels - 1 - l)) & 1) << a), 0)];
+  while (isNew && isWords()) root = words.subarray(8 * root, 8 * root + 8).find((child) => child !== 0) ?? 0;
+  return root < 2 ** 31 ? null : root - 2 ** 31;
+}
+
+/**
+ * Returns the number of a cell of the file, or -1; a cell finer than the finest with attributes has that of its ancestor.
  * @param {Dag} dag @param {CellIndex} index @param {Vec3} voxel  A voxel of the cell. @param {number} level
  */
 export function cellNumber(dag, index, voxel, level) {
@@ -78,6 +90,7 @@ export function cellNumber(dag, index, voxel, level) {
   for (let l = 0; l < last; ++l) {
     const shift = dag.levels - 1 - l, child = voxel.reduce((sum, v, a) => sum | (((v >>> shift) & 1) << a), 0);
     const mask = childMask(dag, node, l), before = bitCount(mask & ((1 << child) - 1));
+    if (!((mask >> child) & 1)) return -1;
     if (l + 1 < index.finest && l < dag.levels - 2 && before > 0) number += cellSum(index, l, node + before);
     else number += 1 + (l + 1 >= index.finest ? before : 0);  // The finest cells have none below them.
     if (l + 1 < index.finest && l === dag.levels - 2) for (let i = 0; i < child; ++i) if ((mask >> i) & 1) number += 1 + bitCount(childOf(dag, node, l, i));

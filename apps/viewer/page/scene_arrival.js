@@ -114,6 +114,11 @@ export class SceneArrival {
     this.report('level', { level: memory.shown, levels: info.levels, bytes: this.bytesLoaded });
   }
 
+  /** Takes the bounds of an edited scene. */
+  measure() {
+    if (this.info !== null && this.memory !== null) this.info.bounds = bounds(this.memory.dag(), BOUNDS_LEVEL) ?? this.info.bounds;
+  }
+
   /** Returns the first view of the scene. Its up vector is that of the file, else it is guessed. @param {import('./hands/pose.js').Box} box @param {FileInfo} info */
   #homeIn(box, { up, home }) {
     return homeView(box, this.aspect(), up === null ? this.guessed : axisNamed(up), home);
@@ -137,8 +142,8 @@ export class SceneArrival {
   }
 
   /** @param {SceneMemory} memory */
-  #newTextures({ info, nodes, leaves }) {
-    return new SceneTextures(this.gl, info, nodes.length, leaves.length / 2);
+  #newTextures({ info, nodes, leaves, version }) {
+    return new SceneTextures(this.gl, info, nodes.length, leaves.length / 2, version);
   }
 
   /** Ends the wait for the scene. */

@@ -3,11 +3,12 @@
  * again after the graphics card has lost them.
  */
 import { finestLevelThatFits } from './gpu/scene_textures.js';
-import { cellNumber, countMaterials, materialOf, withPlaces } from './materials.js';
+import { cellNumber, countMaterials, materialOf, overlayAt, withPlaces } from './materials.js';
 
 /** @typedef {import('./file/scene_loader.js').FileInfo} FileInfo */
 /** @typedef {import('./file/scene_loader.js').LoaderMessage} LoaderMessage */
 /** @typedef {import('./gpu/scene_textures.js').SceneTextures} SceneTextures */
+/** The roots of the DAG and of the values that edits gave to cells. @typedef {{root: number, colors: number, normals: number, materials: number}} Version */
 
 export class SceneMemory {
   /** @param {WebGL2RenderingContext} gl @param {FileInfo} info */
@@ -18,6 +19,10 @@ export class SceneMemory {
     this.isWhole = this.finest === info.levels;
     this.nodes = new Uint32Array(this.isWhole ? info.words : info.levelBegin[this.finest]);
     this.leaves = new Uint32Array(this.isWhole ? 2 * info.leafBlocks : 0);
+    /** The words of values that edits gave to cells. */
+    this.overlay = new Uint32Array();
+    /** @type {Version} */
+    this.version = { root: 0, colors: 0, normals: 0, materials: 0 };
     this.nodeInstances = new Uint8Array(this.nodes.length);
     this.leafInstances = new Uint8Array(this.leaves.length / 2);
     this.shown = 0;
@@ -31,13 +36,16 @@ export class SceneMemory {
   /** The DAG for rays on the CPU. @returns {import('./trace.js').Dag} */
   dag() {
     const { levels, origin, voxelSize } = this.info;
-    return { levels, shown: this.shown, origin, voxelSize, nodes: this.nodes, leaves: this.leaves };
+    return { levels, shown: this.shown, origin, voxelSize, nodes: this.nodes, leaves: this.leaves, root: this.version.root };
   }
 
   /** Returns the material of a cell; null without materials. @param {import('./math.js').Vec3} voxel  One in the cell. @param {number} level @returns {number | null} */
   material(voxel, level) {
     const { cells, attributes } = this;
-    return cells && attributes?.materials ? materialOf(attributes.materials, cellNumber(this.dag(), cells, voxel, level)) : null;
+    if (!cells || !attributes?.materials) return null;
+    const number = cellNumber(this.dag(), cells, voxel, level);
+    const given = overlayAt(this.overlay, this.version.materials, voxel, level, this.info.levels, number < 0);
+    return given ?? (number < 0 ? null : materialOf(attributes.materials, number));
   }
 
   /** Returns how many cells each material has; null before all have arrived, and if there are very many. */
@@ -83,5 +91,6 @@ export class SceneMemory {
     textures.nodes.set(0, this.nodes);
     textures.leaves.set(0, this.leaves);
     if (this.attributes !== null) textures.setLook(this.attributes);
+    if (this.overlay.length > 0) textures.setOverlay(this.overlay);
   }
 }

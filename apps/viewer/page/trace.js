@@ -7,8 +7,11 @@
 /** @typedef {import('./viewer_types.js').Hit} Hit */
 /**
  * The DAG in memory: levels of cells that have arrived.
- * @typedef {{levels: number, shown: number, origin: Vec3, voxelSize: number, nodes: Uint32Array, leaves: Uint32Array}} Dag
+ * @typedef {{levels: number, shown: number, origin: Vec3, voxelSize: number, nodes: Uint32Array, leaves: Uint32Array, root?: number}} Dag  root: 0 if left out; NO_NODE: no voxels.
  */
+
+/** The root of a DAG without voxels. */
+export const NO_NODE = 0xffffffff;
 
 const floats = new Float32Array(1), bitsOf = new Uint32Array(floats.buffer);
 const f32 = Math.fround;
@@ -51,7 +54,8 @@ export function childOf(dag, node, level, index) {
  * @returns {Hit | null}
  */
 export function cast(dag, from, direction, most = Infinity, isLeftOut = null) {
-  if (dag.shown < 1) return null;
+  const { root = 0 } = dag;
+  if (dag.shown < 1 || root === NO_NODE) return null;
   const side = dag.voxelSize * 2 ** dag.levels;
   const start = [0, 1, 2].map((a) => (from[a] - dag.origin[a]) / side);
   let d = [0, 1, 2].map((a) => direction[a] / side);
@@ -100,7 +104,7 @@ export function cast(dag, from, direction, most = Infinity, isLeftOut = null) {
   if (Math.min(plane(0, corner[0]), plane(1, corner[1]), plane(2, corner[2])) <= t || tMax < 0) return null;
   /** @type {number[]} */
   const stack = [];
-  let node = 0, mask = childMask(dag, 0, 0), bit = 22, child = 0;
+  let node = root, mask = childMask(dag, root, 0), bit = 22, child = 0;
   const select = () => {
     child = 0;
     for (let a = 0; a < 3; ++a)
@@ -167,11 +171,11 @@ export function cast(dag, from, direction, most = Infinity, isLeftOut = null) {
 
 /** Returns whether a point in world units is in a set cell. @param {Dag} dag @param {Vec3} point */
 export function contains(dag, point) {
-  if (dag.shown < 1) return false;
+  if (dag.shown < 1 || dag.root === NO_NODE) return false;
   const side = 2 ** dag.levels;
   const voxel = point.map((p, a) => Math.floor((p - dag.origin[a]) / dag.voxelSize));
   if (voxel.some((v) => !(v >= 0 && v < side))) return false;
-  let node = 0;
+  let node = dag.root ?? 0;
   for (let level = 0; level < dag.shown; ++level) {
     const shift = dag.levels - 1 - level;
     const index = voxel.reduce((sum, v, a) => sum | (((v >>> shift) & 1) << a), 0);
@@ -203,7 +207,7 @@ export function bounds(dag, level) {
     for (let i = 0; i < 8; ++i)
       if ((mask >> i) & 1) visit(l + 1 < depth ? childOf(dag, node, l, i) : 0, l + 1, at.map((p, a) => p + ((i >> a) & 1) * (size / 2)));
   };
-  if (depth >= 1) visit(0, 0, [0, 0, 0]);
+  if (depth >= 1 && dag.root !== NO_NODE) visit(dag.root ?? 0, 0, [0, 0, 0]);
   if (!(low[0] <= high[0])) return null;
   const side = dag.voxelSize * 2 ** dag.levels;
   const world = (/** @type {number[]} */ p) => /** @type {Vec3} */ (p.map((x, a) => dag.origin[a] + x * side));

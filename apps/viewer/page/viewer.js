@@ -213,20 +213,36 @@ class CanvasViewer extends Events {
     const { hidden } = this.settings, voxel = /** @type {Vec3} */ (point.map((x, a) => Math.floor((x - dag.origin[a]) / dag.voxelSize)));
     return hidden.length === 0 || !hidden.includes(this.arrival?.memory?.material(voxel, dag.shown) ?? -1);
   }
-  /** @param {number} x @param {number} y */
-  async pick(x, y) {
+  /** @param {number} x @param {number} y @param {number} [root] */
+  async pick(x, y, root) {
     const camera = this.camera();
     const direction = directionThrough(camera, x, y, this.canvas.clientWidth, this.canvas.clientHeight);
-    return this.#cast(camera.eye, direction, Infinity, this.settings.level ?? Infinity);
+    return this.#cast(camera.eye, direction, Infinity, this.settings.level ?? Infinity, root);
   }
-  /** @param {Vec3} origin @param {Vec3} direction @param {number} most @param {number} level  The finest that counts. */
-  #cast(origin, direction, most, level) {
+  /** @param {Vec3} origin @param {Vec3} direction @param {number} most @param {number} level  The finest that counts. @param {number} [root] */
+  #cast(origin, direction, most, level, root) {
     const dag = this.arrival?.memory?.dag();
     if (dag === undefined) return null;
-    const shown = { ...dag, shown: Math.min(dag.shown, level) }, { hidden } = this.settings, { memory } = this.arrival ?? {};
+    const shown = { ...dag, root: root ?? dag.root, shown: Math.min(dag.shown, level) }, { hidden } = this.settings, { memory } = this.arrival ?? {};
     const isLeftOut = hidden.length && memory
       ? (/** @type {Vec3} */ voxel, /** @type {number} */ at) => hidden.includes(memory.material(voxel, at) ?? -1) : null;
     return castInSection(this.settings.section, origin, direction, most, (from, along, end) => cast(shown, from, along, end, isLeftOut));
+  }
+
+  // ---- edits
+
+  /**
+   * Lets `act` change the scene in memory and textures, and draws it.
+   * @param {(memory: import('./scene_memory.js').SceneMemory, textures: import('./gpu/scene_textures.js').SceneTextures) => void} act
+   * @param {boolean} goesOn  Whether more changes follow soon.
+   */
+  change(act, goesOn) {
+    const { memory, textures } = this.arrival ?? {};
+    if (!memory || !textures) return;
+    act(memory, textures);
+    if (!goesOn) this.arrival?.measure();
+    this.#touch(goesOn);
+    this.emit('edited');
   }
 
   // ---- pictures

@@ -55,7 +55,9 @@
  * @property {(settings: PartialSettings, by?: string) => void} set
  * @property {() => Settings} get
  * @property {() => Camera} camera  The camera in force: that of the settings, else the suggested view.
- * @property {(x: number, y: number) => Promise<Hit | null>} pick  CSS pixels from the canvas's corner.
+ * @property {(x: number, y: number, root?: number) => Promise<Hit | null>} pick  CSS pixels from the canvas's corner; `root`: of another version of an edited scene.
+ * @property {(act: (memory: import('./scene_memory.js').SceneMemory, textures: import('./gpu/scene_textures.js').SceneTextures) => void,
+ *   goesOn: boolean) => void} change  Lets a function change the scene, and draws it; `goesOn`: more changes follow soon.
  * @property {(origin: Vec3, direction: Vec3, distance: number) => Hit | null} castNow  Unit direction.
  * @property {(hit: Hit) => number | null} material  Its id; null without materials.
  * @property {() => number[] | null} materialCounts  Cells of the finest level with materials, by id; null before they have arrived, and for very large scenes.

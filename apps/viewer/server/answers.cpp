@@ -136,6 +136,7 @@ bool Answers::is_allowed_host(const httplib::Request& request) const {
 void Answers::answer(const httplib::Request& request, httplib::Response& response) const {
   if (!is_allowed_host(request))
     return refuse(response, 403, "this server answers only for localhost");
+  if (edits_ && EditAnswers::takes(request)) return edits_->answer(request, response);
   if (request.method != "GET" && request.method != "HEAD") {
     response.set_header("Allow", "GET, HEAD");
     return refuse(response, 405, "only GET and HEAD");

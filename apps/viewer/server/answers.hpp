@@ -3,12 +3,14 @@
 #include <httplib.h>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "viewer/embedded/page_files.hpp"
 #include "viewer/scene/scene_bytes.hpp"
+#include "viewer/server/edit_answers.hpp"
 #include "viewer/server/multipart_body.hpp"
 
 namespace voxdag {
@@ -31,6 +33,11 @@ class Answers {
   /// the loopback interface. `scene` and `files` must outlive this object.
   Answers(const SceneBytes& scene, std::span<const PageFile> files, const std::string& local_host);
 
+  /// Answers the requests of EditAnswers, too. Call it before the first request.
+  void take_edits(EditSession& session, const std::string& token) {
+    edits_.emplace(session, token);
+  }
+
   /// Returns the header fields of every answer.
   static const httplib::Headers& default_headers();
 
@@ -49,6 +56,7 @@ class Answers {
   const SceneBytes& scene_;
   const std::string local_host_, scene_tag_;
   std::map<std::string_view, PageFileAnswer> page_;  ///< By the path of the page's file.
+  std::optional<EditAnswers> edits_;
 };
 
 }  // namespace voxdag

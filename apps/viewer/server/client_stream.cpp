@@ -19,6 +19,8 @@ const char* status_line(int status) {
       return "400 Bad Request";
     case 408:
       return "408 Request Timeout";
+    case 413:
+      return "413 Content Too Large";
     case 416:
       return "416 Range Not Satisfiable";
     case 431:
@@ -44,8 +46,8 @@ bool ClientStream::wait_until(Event event, Clock::time_point deadline) const {
 }
 
 HeadResult ClientStream::receive_head() {
-  received_.erase(0, head_bytes_);
-  head_bytes_ = at_ = 0;
+  received_.erase(0, head_bytes_ + body_bytes_);
+  head_bytes_ = body_bytes_ = at_ = 0;
   const Clock::time_point first = Clock::now();
   Clock::time_point deadline = first + (received_.empty() ? limits_.idle : limits_.head);
   for (std::size_t searched = 0;;) {
@@ -66,6 +68,21 @@ HeadResult ClientStream::receive_head() {
     if (received_.empty()) deadline = Clock::now() + limits_.head;
     received_.append(bytes, static_cast<std::size_t>(got));
   }
+}
+
+std::optional<std::string> ClientStream::receive_body(std::size_t size) {
+  const Clock::time_point deadline = Clock::now() + limits_.body;
+  while (received_.size() < head_bytes_ + size) {
+    if (!wait_until(kRead, deadline)) return {};
+    char bytes[4096];
+    const std::size_t most = std::min(sizeof bytes, head_bytes_ + size - received_.size());
+    const ssize_t got = recv(socket_, bytes, most, MSG_DONTWAIT);
+    if (got < 0 && (errno == EINTR || errno == EAGAIN || errno == EWOULDBLOCK)) continue;
+    if (got <= 0) return {};
+    received_.append(bytes, static_cast<std::size_t>(got));
+  }
+  body_bytes_ = size;
+  return received_.substr(head_bytes_, size);
 }
 
 void ClientStream::begin_response() {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -28,6 +29,9 @@ class ClientStream final : public httplib::Stream {
   /// Waits for the next head; read() then returns its bytes.
   HeadResult receive_head();
   std::string_view head() const { return std::string_view(received_).substr(0, head_bytes_); }
+  /// Waits for the `size` bytes behind the head, and returns them; nothing if they do not come in
+  /// time.
+  std::optional<std::string> receive_body(std::size_t size);
   /// Starts the time limits of a response.
   void begin_response();
   /// Sends a response without the HTTP library.
@@ -56,6 +60,7 @@ class ClientStream final : public httplib::Stream {
   const std::atomic<bool>& is_stopping_;
   std::string received_;        // The head, and the bytes that the client sent behind it.
   std::size_t head_bytes_ = 0;  // Bytes of the head in received_; 0 until it is complete.
+  std::size_t body_bytes_ = 0;  // Bytes of the body behind it that were returned.
   std::size_t at_ = 0;          // The next byte of the head for read().
   Clock::time_point response_start_ = Clock::now();
   std::uint64_t sent_ = 0;  // Bytes of the response.

@@ -46,7 +46,14 @@ class PageServer::Http final : public httplib::Server {
       if (response.status == 304) response.headers.erase("Content-Length");
     });
     bind();
+    if (options_.editing != nullptr && !is_local_)
+      throw Error("cannot edit on " + options_.address +
+                  ": other machines could edit, too; only an address of this machine can be used");
     answers_.emplace(scene, options_.files, is_local_ ? url_host(options_.address) : "");
+    if (options_.editing != nullptr) {
+      token_ = make_token();
+      answers_->take_edits(*options_.editing, token_);
+    }
   }
   ~Http() override {
     stop();
@@ -64,6 +71,7 @@ class PageServer::Http final : public httplib::Server {
   }
   int port() const { return port_; }
   const std::string& address() const { return options_.address; }
+  const std::string& token() const { return token_; }
 
  private:
   static constexpr int kMaxRequests = 1000;  // The largest number of requests of a connection.
@@ -132,21 +140,30 @@ class PageServer::Http final : public httplib::Server {
       client.send_status(result == HeadResult::kTooSlow ? 408 : 431);
       return false;
     }
-    const RequestHead head = check_head(client.head(), options_.limits);
+    const RequestHead head =
+        check_head(client.head(), options_.limits, options_.editing != nullptr);
     if (head.refusal != 0) {
       client.send_status(head.refusal);
+      return false;
+    }
+    std::optional<std::string> body = client.receive_body(head.body_bytes);
+    if (!body) {
+      client.send_status(408);
       return false;
     }
     client.begin_response();
     bool is_closed = is_last || head.may_have_body;
     const bool is_sent =
-        process_request(client, is_closed, is_closed,
-                        [this](httplib::Request& request) { answers_->plan(request); });
+        process_request(client, is_closed, is_closed, [&](httplib::Request& request) {
+          request.body = std::move(*body);
+          answers_->plan(request);
+        });
     return is_sent && !is_closed;
   }
 
   const ServerOptions options_;
   std::optional<Answers> answers_;  // Made when the address is known.
+  std::string token_;               // Of the page that edits.
   Connections connections_;
   Descriptor listener_;  // A duplicate of the listening socket; the library owns svr_sock_.
   std::thread thread_;
@@ -167,7 +184,9 @@ void PageServer::stop() { http_->stop(); }
 int PageServer::port() const { return http_->port(); }
 
 std::string PageServer::url() const {
-  return "http://" + url_host(http_->address()) + ":" + std::to_string(port()) + "/";
+  const std::string& token = http_->token();
+  return "http://" + url_host(http_->address()) + ":" + std::to_string(port()) + "/" +
+         (token.empty() ? "" : "?edit=" + token);
 }
 
 }  // namespace voxdag

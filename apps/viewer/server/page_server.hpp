@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "viewer/edit/edit_session.hpp"
 #include "viewer/embedded/page_files.hpp"
 #include "viewer/scene/scene_bytes.hpp"
 #include "viewer/server/server_limits.hpp"
@@ -17,6 +18,8 @@ struct ServerOptions {
   ServerLimits limits{};
   /// The files of the page, which must outlive the server.
   std::span<const PageFile> files = page_files();
+  /// The scene to edit, which must outlive the server; null: the page only shows it.
+  EditSession* editing = nullptr;
 };
 
 /// Answers requests as Answers does. Each connection has a thread. If there are too many, one that
@@ -24,7 +27,7 @@ struct ServerOptions {
 class PageServer {
  public:
   /// Listens; connections wait until start(). `scene` must outlive the server. Throws Error if the
-  /// address cannot be used.
+  /// address cannot be used, and for editing on an address that other machines can reach.
   PageServer(const SceneBytes& scene, const ServerOptions& options);
   PageServer(const PageServer&) = delete;
   PageServer& operator=(const PageServer&) = delete;
@@ -37,7 +40,8 @@ class PageServer {
   void stop();
 
   int port() const;
-  /// Returns the address of the page: "http://127.0.0.1:8080/".
+  /// Returns the address of the page: "http://127.0.0.1:8080/". Who knows the address of a page
+  /// that edits may edit: it ends in "?edit=" and a secret.
   std::string url() const;
 
  private:

@@ -1,6 +1,7 @@
 #include "viewer/server/request_head.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <string>
 
 #include "voxdag/core/lower_case.hpp"
@@ -19,11 +20,21 @@ bool is_control(char c) {
   return (byte < 0x20 && c != '\t') || byte == 0x7F;
 }
 
+/// Sets the bytes of a body, or refuses it.
+void take_body(std::string_view length, const ServerLimits& limits, RequestHead& head) {
+  const char* const end = length.data() + length.size();
+  const auto [stop, error] = std::from_chars(length.data(), end, head.body_bytes);
+  if (stop == end && error == std::errc() && head.body_bytes <= limits.most_body_bytes) return;
+  head = {stop == end ? 413 : 400, true};
+}
+
 }  // namespace
 
-RequestHead check_head(std::string_view head, const ServerLimits& limits) {
+RequestHead check_head(std::string_view head, const ServerLimits& limits, bool takes_bodies) {
   RequestHead result;
-  int fields = 0, hosts = 0, ranges = 0;
+  int fields = 0, hosts = 0, ranges = 0, lengths = 0;
+  bool is_post = false, has_other_body = false;
+  std::string_view body_length;
   std::size_t begin = 0;
   for (bool is_first = true;; is_first = false) {
     const std::size_t end = head.find("\r\n", begin);
@@ -34,6 +45,7 @@ RequestHead check_head(std::string_view head, const ServerLimits& limits) {
     if (is_first) {
       const std::string_view method = line.substr(0, line.find(' '));
       result.may_have_body = method != "GET" && method != "HEAD";
+      is_post = method == "POST";
       continue;
     }
     if (++fields > limits.most_fields) return {431, true};
@@ -44,15 +56,22 @@ RequestHead check_head(std::string_view head, const ServerLimits& limits) {
     const std::string name = lower_case(line.substr(0, colon));
     const std::string_view value = trimmed(line.substr(colon + 1));
     if (name == "host") ++hosts;
-    if (name == "transfer-encoding" || (name == "content-length" && value != "0") ||
-        name == "expect" || name == "upgrade")
-      result.may_have_body = true;
+    if (name == "content-length") {
+      ++lengths;
+      body_length = value;
+    }
+    has_other_body |= name == "transfer-encoding" || name == "expect" || name == "upgrade";
+    result.may_have_body |= has_other_body || (name == "content-length" && value != "0");
     if (name != "range") continue;
     if (++ranges > 1 || value.size() > limits.most_range_bytes ||
         std::count(value.begin(), value.end(), ',') >= limits.most_ranges)
       result.refusal = 416;
   }
   if (hosts > 1) return {400, true};
+  if (takes_bodies && is_post && lengths == 1 && !has_other_body && result.refusal == 0) {
+    result.may_have_body = false;
+    take_body(body_length, limits, result);
+  }
   return result;
 }
 

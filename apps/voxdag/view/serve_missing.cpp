@@ -10,7 +10,8 @@ void require_page_server() {
       "FILE -o FOLDER/`, which writes a page for any web server");
 }
 
-void serve_scene(const SceneBytes&, std::span<const PageFile>, const ServeArguments&, Session&) {
+void serve_scene(const SceneBytes&, std::span<const PageFile>, const ServeArguments&, Session&,
+                 EditSession*) {
   require_page_server();
 }
 

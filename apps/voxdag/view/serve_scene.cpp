@@ -9,11 +9,14 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <optional>
 #include <system_error>
 #include <thread>
 
 #include "viewer/server/page_server.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/descriptor.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -23,10 +26,35 @@ bool is_set(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-/// Starts xdg-open with the address if there is a display. Does not wait for it, and ignores its
-/// errors, because the address is also on stdout.
+bool has_display() { return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"); }
+
+/// A file that leads a browser to a secret address. Other users of this machine can see the
+/// arguments of a browser, but only this user can read the file.
+class SecretPage {
+ public:
+  explicit SecretPage(const std::string& target) {
+    const bool has_own = is_set("XDG_RUNTIME_DIR");
+    path_ = (has_own ? std::string(std::getenv("XDG_RUNTIME_DIR"))
+                     : std::filesystem::temp_directory_path().string()) +
+            "/voxdag-XXXXXX.html";
+    const Descriptor file(mkostemps(path_.data(), 5, O_CLOEXEC));
+    const std::string text = "<meta http-equiv=\"refresh\" content=\"0;url=" + target + "\">\n";
+    if (!file.is_open() || write(file.get(), text.data(), text.size()) < 0) path_.clear();
+  }
+  SecretPage(const SecretPage&) = delete;
+  SecretPage& operator=(const SecretPage&) = delete;
+  ~SecretPage() {
+    if (!path_.empty()) unlink(path_.c_str());
+  }
+  std::string url() const { return "file://" + path_; }
+
+ private:
+  std::string path_;
+};
+
+/// Starts xdg-open with the address. Does not wait for it, and ignores its errors, because the
+/// address is also on stdout.
 void open_in_browser(const std::string& url) {
-  if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY")) return;
   posix_spawn_file_actions_t files;
   posix_spawnattr_t attributes;
   posix_spawn_file_actions_init(&files);
@@ -50,11 +78,12 @@ void open_in_browser(const std::string& url) {
 void require_page_server() {}
 
 void serve_scene(const SceneBytes& scene, std::span<const PageFile> page,
-                 const ServeArguments& arguments, Session& session) {
+                 const ServeArguments& arguments, Session& session, EditSession* editing) {
   ServerOptions options;
   options.files = page;
   options.address = arguments.address;
   options.port = arguments.port;
+  options.editing = editing;
   PageServer server(scene, options);
   server.start();
   session.bar.clear();
@@ -62,9 +91,13 @@ void serve_scene(const SceneBytes& scene, std::span<const PageFile> page,
   if (std::fflush(stdout) != 0)
     throw Error("standard output", "", std::system_category().message(errno));
   if (!session.quiet) print_line("Ctrl-C ends the server");
-  if (arguments.open) open_in_browser(server.url());
+  std::optional<SecretPage> secret;
+  if (arguments.open && has_display())
+    open_in_browser(editing == nullptr ? server.url() : secret.emplace(server.url()).url());
   while (!session.progress.cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   server.stop();
+  if (editing != nullptr && editing->has_unsaved() && !session.quiet)
+    print_line("the last edits were not saved");
   session.progress.throw_if_cancelled();
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "cli/session.hpp"
+#include "viewer/edit/edit_session.hpp"
 #include "viewer/embedded/page_files.hpp"
 #include "viewer/scene/scene_bytes.hpp"
 
@@ -18,8 +19,9 @@ struct ServeArguments {
 void require_page_server();
 
 /// Prints the page's address as one line on stdout, and serves the files of the page until the user
-/// ends the program. Throws Error if it cannot listen, and Cancelled at a signal.
+/// ends the program. The page edits the scene of `editing`; null: it only shows the scene. Throws
+/// Error if it cannot listen, and Cancelled at a signal.
 void serve_scene(const SceneBytes& scene, std::span<const PageFile> page,
-                 const ServeArguments& arguments, Session& session);
+                 const ServeArguments& arguments, Session& session, EditSession* editing = nullptr);
 
 }  // namespace voxdag::cli

@@ -31,6 +31,8 @@ class ShownScene {
   const SceneBytes& bytes() const { return *bytes_; }
   /// Returns the DAG of a scene from read().
   const ReducedDag& dag() const { return *dag_; }
+  /// Returns what counts the memory of a scene from read().
+  MemoryBudget* memory() const { return memory_.get(); }
   /// Returns the number of voxels of a scene from read().
   std::uint64_t voxels() const { return dag_->metadata().counts.voxels; }
 

@@ -12,7 +12,7 @@ class SourceDag {
 
   std::uint32_t root() const {
     if (dag_.is_empty()) return kNoCell;
-    return above_ > 0 ? kAboveRoot : 0;
+    return above_ > 0 ? kAboveRoot : dag_.root;
   }
   /// Returns child `index` of a node of `level`, which is below levels - 2; kNoCell if there is
   /// none, or if `node` is kNoCell.
@@ -20,7 +20,7 @@ class SourceDag {
     if (node == kNoCell) return kNoCell;
     if (node == kAboveRoot) {
       if (index != 0) return kNoCell;
-      return level + 1 == above_ ? 0 : kAboveRoot;
+      return level + 1 == above_ ? dag_.root : kAboveRoot;
     }
     const std::uint32_t* words = dag_.nodes + node;
     return (child_mask(words) >> index & 1) != 0 ? child_pointer(words, index) : kNoCell;

@@ -93,6 +93,20 @@ class NumberTable {
     return NumberSlots::number_of(found);
   }
 
+  /// Removes the numbers for which keep(number) is false. Throws OverMemory.
+  template <class Keep>
+  void retain(const Keep& keep) {
+    CountedVector<std::uint64_t> kept(slots_.size(), 0, slots_.get_allocator());
+    count_ = 0;
+    for (std::uint64_t& slot : slots_)
+      if (slot != 0 && !keep(NumberSlots::number_of(slot)))
+        slot = 0;
+      else
+        count_ += slot != 0 ? 1 : 0;
+    view(kept).add_all(view(slots_));
+    slots_.swap(kept);
+  }
+
  private:
   static NumberSlots view(CountedVector<std::uint64_t>& slots) {
     return {slots.data(), slots.size()};

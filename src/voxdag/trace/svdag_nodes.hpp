@@ -36,7 +36,7 @@ class SvdagNodes {
 
   VOXDAG_HD bool is_empty() const { return is_empty_; }
   VOXDAG_HD int levels() const { return levels_; }
-  VOXDAG_HD Node root() const { return 0; }
+  VOXDAG_HD Node root() const { return view_.root; }
 
   VOXDAG_HD std::uint32_t child_mask(Node node, int level) const {
     if (level < levels_ - 2) return voxdag::child_mask(nodes_ + node);
@@ -78,6 +78,7 @@ class SvdagPath {
       : nodes_(layout.view().nodes),
         leaf_blocks_(layout.view().leaf_blocks),
         leaf_level_(layout.levels() - 2),
+        node_(layout.root()),
         mask_(layout.child_mask(layout.root(), 0)),
         block_mask_(mask_) {
     if (leaf_level_ == 0) block_ = leaf_blocks_[node_];
@@ -111,7 +112,7 @@ class SvdagPath {
   const std::uint32_t* nodes_;
   const std::uint64_t* leaf_blocks_;
   int leaf_level_;  ///< L-2
-  std::uint32_t node_ = 0, mask_;
+  std::uint32_t node_, mask_;
   /// The last leaf block that the walk was in.
   std::uint64_t block_ = 0;
   std::uint32_t block_mask_;

@@ -15,7 +15,10 @@ try {
   if (problem) problems.unshift(problem);
   const viewer = createViewer({ container: picture, settings });
   const hands = new Hands(viewer);
-  const ui = createInterface(viewer, hands, container, base);
+  // `voxdag view --edit` prints an address with a secret, and sends edit/.
+  const secret = new URLSearchParams(location.search).get('edit');
+  const edits = secret === null ? null : await import('../edit/editing.js').catch(() => null);
+  const ui = createInterface(viewer, hands, container, base, edits && ((ui) => edits.makeEditing(ui, secret ?? '')));
   keepLink(ui, base);
   for (const problem of problems) console.warn(problem);
   if (problems.length) ui.toast(capitalized(problems[0]), true);

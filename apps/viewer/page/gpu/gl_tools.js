@@ -67,6 +67,11 @@ export class Program {
     }
   }
 
+  /** Sets unsigned integer uniforms. @param {{[name: string]: number}} values */
+  uints(values) {
+    for (const [name, value] of Object.entries(values)) this.gl.uniform1ui(this.place(name), value);
+  }
+
   /** Binds textures to units and uniforms. @param {{[name: string]: WebGLTexture | null}} textures */
   textures(textures) {
     const { gl } = this;

@@ -141,6 +141,7 @@ export class Renderer {
     program.floats(cameraUniforms(place, settings.camera, picture.width, picture.height));
     program.floats(sectionUniforms(place, settings.section));
     program.floats({ u_sample: samplePlace(picture.samples), u_lod: settings.lod });
+    program.uints({ u_root: shot.scene.version.root });
     program.ints({ u_levels: shot.scene.info.levels, u_shown: Math.min(shot.shown, settings.level ?? DAG.maxLevels), u_show: SHOWS.indexOf(settings.show) });
   }
 

@@ -16,10 +16,16 @@ export function finestLevelThatFits(gl, info) {
 }
 
 export class SceneTextures {
-  /** @param {WebGL2RenderingContext} gl @param {FileInfo} info @param {number} words of the levels that will be loaded @param {number} leafBlocks */
-  constructor(gl, info, words, leafBlocks) {
+  /**
+   * @param {WebGL2RenderingContext} gl @param {FileInfo} info @param {number} words of the levels that will be loaded @param {number} leafBlocks
+   * @param {import('../scene_memory.js').Version} version  What to show; it may change.
+   */
+  constructor(gl, info, words, leafBlocks, version) {
     this.gl = gl;
     this.info = info;
+    this.version = version;
+    /** The words of values that edits gave to cells. @type {LongTexture | null} */
+    this.overlay = null;
     this.nodes = new LongTexture(gl, 'R32UI', words);
     this.leaves = new LongTexture(gl, 'RG32UI', leafBlocks);
     /** @type {LongTexture | null} */
@@ -46,6 +52,22 @@ export class SceneTextures {
     };
   }
 
+  /** Uploads the words of values that edits gave to cells. @param {Uint32Array} words */
+  setOverlay(words) {
+    if (this.overlay !== null) this.gl.deleteTexture(this.overlay.texture);
+    this.overlay = new LongTexture(this.gl, 'R32UI', words.length);
+    this.overlay.set(0, words);
+  }
+
+  /** Uploads nodes and leaf blocks to larger textures. @param {Uint32Array} nodes @param {Uint32Array} leaves */
+  setNodes(nodes, leaves) {
+    for (const { texture } of [this.nodes, this.leaves]) this.gl.deleteTexture(texture);
+    this.nodes = new LongTexture(this.gl, 'R32UI', nodes.length);
+    this.leaves = new LongTexture(this.gl, 'RG32UI', leaves.length / 2);
+    this.nodes.set(0, nodes);
+    this.leaves.set(0, leaves);
+  }
+
   /** Uploads how many cells each node stands for. @param {Uint8Array} nodes @param {Uint8Array} leaves */
   setInstances(nodes, leaves) {
     this.nodeInstances ??= new LongTexture(this.gl, 'R8UI', nodes.length);
@@ -65,8 +87,9 @@ export class SceneTextures {
    * @returns {{[name: string]: WebGLTexture}}
    */
   lookTextures(program, wanted) {
-    const { gl, look, info } = this;
+    const { gl, look, info, version } = this;
     if (look === null) return {};
+    program.uints({ u_color_overlay: version.colors, u_normal_overlay: version.normals });
     const begin = [];
     let at = 0;
     for (let l = 0; l < DAG.maxLevels; ++l) {
@@ -80,7 +103,8 @@ export class SceneTextures {
     gl.uniform1uiv(program.place('u_level_begin'), levelBegin);
     program.ints({ u_finest: look.index.finest, u_color_bits: wanted.colors ? look.colorBits : -1, u_normal_bits: wanted.normals ? look.normalBits : -1 });
     const [colorWords, colorPages, normalWords, normalPages] = look.values.map((v) => (v ?? look.slots).texture);
-    return { u_slots: look.slots.texture, u_color_words: colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages };
+    const u_overlay = (this.overlay ?? look.slots).texture;
+    return { u_overlay, u_slots: look.slots.texture, u_color_words: colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages };
   }
 
   /**
@@ -99,6 +123,7 @@ export class SceneTextures {
       this.hiddenOf = hidden;
     }
     program.ints({ u_material_bits: idBits(materials.count) });
+    program.uints({ u_material_overlay: this.version.materials });
     return { u_material_words: materials.words.texture, u_material_pages: materials.pages.texture, u_hidden_materials: /** @type {LongTexture} */ (this.hidden).texture };
   }
   /** The ids that `hidden` holds. @type {readonly number[] | null} */
@@ -107,7 +132,7 @@ export class SceneTextures {
   hidden = null;
 
   #all() {
-    return [this.hidden, this.look?.materials?.words ?? null, this.look?.materials?.pages ?? null, this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
+    return [this.hidden, this.overlay, this.look?.materials?.words ?? null, this.look?.materials?.pages ?? null, this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
   }
   bytes() {
     return this.#all().reduce((sum, texture) => sum + (texture?.bytes ?? 0), 0);

@@ -57,6 +57,8 @@ export class Hands extends Events {
   onOpened = () => { this.isLoaded = false; };
   /** Takes a double click for something else; returns whether it did. @type {(x: number, y: number) => boolean} */
   takesDoubleClick = () => false;
+  /** Takes a drag for something else than the camera, if it is wanted. @type {(x: number, y: number) => import('./pointers.js').Drag | null} */
+  takesDrag = () => null;
   /** @type {ReturnType<typeof listeners>} */
   #listeners;
 
@@ -74,6 +76,7 @@ export class Hands extends Events {
     this.navigator.reducedMotion = this.reducedMotion;
     this.navigator.measure(canvas);
     this.pointers = new Pointers(canvas, this.navigator, {
+      drag: (x, y) => this.takesDrag(x, y),
       wake: () => { this.emit('gesture'); this.wake(); },
       click: (x, y) => this.emit('click', x, y),
       doubleClick: (x, y) => this.#double(x, y),

@@ -12,12 +12,15 @@ import { clamp } from '../math.js';
  *
  * @typedef {object} PointerOwner
  * @property {() => void} wake  The camera has a new goal.
+ * @property {(x: number, y: number) => Drag | null} drag  Takes a drag of one finger, pen or left button for something else, if it is wanted.
  * @property {(x: number, y: number) => void} click
  * @property {(x: number, y: number) => void} doubleClick
  * @property {(x: number, y: number, down: boolean) => void} hover  Where the pointer is, over the picture.
  * @property {() => void} leave
  * @property {() => void} speed  The speed of flying and walking has changed.
  */
+
+/** A drag that does not move the camera. @typedef {{move: (x: number, y: number) => void, end: () => void}} Drag */
 
 /** Pixels that a click may move, by kind of pointer. */
 const CLICK_REACH = { mouse: 4, touch: 10, pen: 8 };
@@ -40,6 +43,8 @@ export class Pointers {
     /** @type {Vec3 | null} */
     this.grabbed = null;
     this.pans = false;
+    /** A drag that something else has taken. @type {Drag | null} */
+    this.taken = null;
     /** @type {{x: number, y: number} | null} */
     this.stickAt = null;
     /** The motion that three fingers ask for: right, forward. @type {[number, number]} */
@@ -95,10 +100,18 @@ export class Pointers {
     this.pans = event.pointerType === 'mouse' && (event.button !== 0 || event.shiftKey || event.ctrlKey);
     if (event.button === 1) event.preventDefault();  // no automatic scrolling
     const hand = this.#hand();
+    this.#endDrag();
+    // A finger may be the first of two: it begins a drag when it moves.
+    if (this.press && !this.pans && event.pointerType !== 'touch') this.taken = this.owner.drag(at.x, at.y);
     this.grabbed = this.navigator.pointUnder(hand.x, hand.y);
     this.stickAt = this.down.size >= 3 ? hand : null;
     this.stick = [0, 0];
     if (this.navigator.flight) this.navigator.stop();
+  }
+
+  #endDrag() {
+    this.taken?.end();
+    this.taken = null;
   }
 
   /** @param {PointerEvent} event */
@@ -111,9 +124,12 @@ export class Pointers {
     const before = this.#hand();
     this.down.set(event.pointerId, at);
     const now = this.#hand(), dx = now.x - before.x, dy = now.y - before.y;
+    if (this.taken) return this.taken.move(at.x, at.y);
     if (this.press) {
       this.press.moved = Math.max(this.press.moved, Math.hypot(at.x - this.press.x, at.y - this.press.y));
       if (this.press.moved <= this.#reach(event)) return;
+      if (this.press.time > 0 && event.pointerType === 'touch' && (this.taken = this.owner.drag(this.press.x, this.press.y)))
+        return this.taken.move(at.x, at.y);
       if (this.press.time > 0) {  // the way so far, so that nothing is lost
         this.#drag(at.x - this.press.x, at.y - this.press.y, event);
         this.press.time = 0;
@@ -151,6 +167,11 @@ export class Pointers {
     this.stickAt = null;
     const { press } = this;
     this.press = null;
+    if (this.taken) return this.#endDrag();
+    if (event.type === 'pointerup' && press && press.time > 0 && event.pointerType === 'touch') {
+      const tap = this.owner.drag(press.x, press.y);
+      if (tap) return tap.end();
+    }
     if (this.down.size > 0) {
       const hand = this.#hand();
       this.grabbed = this.navigator.pointUnder(hand.x, hand.y);

@@ -42,9 +42,10 @@ const HELP = [
   ]],
 ];
 
-export function helpPanel() {
+/** @param {[string, [string, string][]][]} [more]  Keys of panels that only some pages have. */
+export function helpPanel(more = []) {
   return {
-    element: h('div', { class: 'help' }, ...HELP.map(([title, rows]) =>
+    element: h('div', { class: 'help' }, ...[...more, ...HELP].map(([title, rows]) =>
       group(title, h('dl', {}, ...rows.map(([keys, act]) =>
         h('div', {}, h('dt', {}, ...(/^(.|Shift|Space|Enter|Escape|Arrows|[A-Z](?: [A-Z])+|\+ −|1 … 7)$/.test(keys)
           ? (/^[A-Z+](?: .)+$/.test(keys) ? keys.split(' ') : [keys]).map((key) => h('kbd', {}, key)) : [keys])), h('dd', {}, act)))))),

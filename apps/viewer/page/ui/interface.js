@@ -41,8 +41,14 @@ import { SIDES, viewPanel } from './view_panel.js';
  * @property {() => string} hint
  * @property {(hit: Hit) => void} click
  * @property {(hit: Hit | null) => void} [hover]
+ * @property {(x: number, y: number) => import('../hands/pointers.js').Drag | null} [drag]  Takes drags from the camera; then there are no clicks.
  * @property {() => boolean} [finish]  Enter ends a part of its work; returns whether there was one.
  * @property {() => void} [end]
+ *
+ * @typedef {object} Extra  A panel that only some pages have.
+ * @property {Panel} panel
+ * @property {[string, [string, string][]]} help  Its keys: the title, and keys with what they do.
+ * @property {() => void} act  What its key does.
  *
  * @typedef {object} Ui  Parts of the interface that panels may use.
  * @property {Viewer} viewer
@@ -63,7 +69,8 @@ import { SIDES, viewPanel } from './view_panel.js';
  */
 
 /** @type {[string, string, string?][]} */
-const PANELS = [
+const ALL_PANELS = [
+  ['edit', 'Edit', 'T'],
   ['view', 'View'], ['light', 'Light'], ['section', 'Section', 'B'], ['materials', 'Materials'], ['measure', 'Measure', 'M'], ['notes', 'Notes', 'N'],
   ['film', 'Camera path', 'K'], ['compare', 'Compare'], ['share', 'Save and share'], ['statistics', 'Statistics', 'I'], ['help', 'Help', 'H'],
 ];
@@ -73,9 +80,11 @@ const NUMBERS_MS = 250;
 
 /**
  * Adds the interface to a container, in which an element holds only the viewer's canvas.
- * @param {Viewer} viewer @param {Hands} hands @param {HTMLElement} container @param {Settings} [base]  What the page begins with. @returns {Ui}
+ * @param {Viewer} viewer @param {Hands} hands @param {HTMLElement} container @param {Settings} [base]  What the page begins with.
+ * @param {((ui: Ui) => Extra) | null} [editing]  Makes the panel "Edit". @returns {Ui}
  */
-export function createInterface(viewer, hands, container, base = DEFAULTS) {
+export function createInterface(viewer, hands, container, base = DEFAULTS, editing = null) {
+  const PANELS = editing ? ALL_PANELS : ALL_PANELS.slice(1);
   const status = new Status(viewer, container);
   const { canvas } = viewer;
   const overlay = new Overlay(viewer, canvas.parentElement ?? container);
@@ -133,10 +142,12 @@ export function createInterface(viewer, hands, container, base = DEFAULTS) {
     }),
   };
 
+  const edit = editing?.(ui);
   const section = sectionPanel(ui), measure = measurePanel(ui), notes = notesPanel(ui), film = filmPanel(ui), share = sharePanel(ui), compare = comparePanel(ui);
   /** @type {{[name: string]: Panel}} */
   const panels = {
-    view: viewPanel(ui), light: lightPanel(ui), section, measure, notes, film, compare, materials: materialsPanel(ui), share, statistics: statisticsPanel(ui), help: helpPanel(),
+    view: viewPanel(ui), light: lightPanel(ui), section, measure, notes, film, compare, materials: materialsPanel(ui), share, statistics: statisticsPanel(ui), help: helpPanel(edit && [edit.help]),
+    ...(edit && { edit: edit.panel }),
   };
   const readout = new Readout(ui, container);
   scaleBar(ui, canvas.parentElement ?? container, () => opened === 'measure' || viewer.get().measures.length > 0);
@@ -204,6 +215,7 @@ export function createInterface(viewer, hands, container, base = DEFAULTS) {
     if (tool) use(x, y);
     return tool !== null;
   };
+  hands.takesDrag = (x, y) => tool?.drag?.(x, y) ?? null;
   hands.on('hover', (x, y, down) => {
     if (!down) readout.look(x, y);
   });
@@ -219,6 +231,7 @@ export function createInterface(viewer, hands, container, base = DEFAULTS) {
     c: () => readout.copy(), k: () => film.record(), p: () => share.screenshot(), l: () => hands.lockPointer(),
     b: () => { section.toggle(); ui.open('section'); },
     m: () => { ui.open('measure'); measure.tool.toggle(); }, n: () => { ui.open('notes'); notes.tool.toggle(); },
+    ...(edit && { t: () => { ui.open('edit'); edit.act(); } }),
     o: () => viewer.set({ mode: 'orbit' }, 'ui'), v: () => viewer.set({ mode: 'fly' }, 'ui'), g: () => viewer.set({ mode: 'walk' }, 'ui'),
   };
   SIDES.forEach(([name], i) => { shortcuts[String(i + 1)] = () => hands.view(name); });

@@ -84,7 +84,7 @@ std::optional<NearestVoxel> nearest_voxel(const SvdagView& dag, Vec3d point, dou
     if (svdag_contains(dag, voxel, dag.levels)) return NearestVoxel{voxel, 0};
   }
   Search search(dag, point, most2);
-  search.visit(0, 0, {});
+  search.visit(0, dag.root, {});
   if (!search.is_found()) return std::nullopt;
   return search.result();
 }

@@ -2,25 +2,19 @@
 /// The unique nodes of one level of a DAG under construction: hash-consing for many threads.
 ///
 /// A node is a run of 32-bit words (child mask and the ids of its children, or the two words of a
-/// leaf block). `intern` returns the same id for equal words in all threads. The table is split
-/// into shards by hash. Threads find an existing node (the common case) without a lock; to add a
-/// node they lock its shard. Each thread writes words into runs of memory of its own, so that no
-/// lock is held while memory is allocated. The ids depend on timing; canonical_order() makes the
-/// result independent of it.
+/// leaf block). `intern` returns the same id for equal words in all threads. Each thread writes
+/// words into runs of memory of its own, so that no lock is held while memory is allocated. The ids
+/// depend on timing; canonical_order() makes the result independent of it.
 ///
-///   id      | word offset (32 bits), the number in a slot (core/number_table.hpp) |
-///   table   | address, log2 of the number of slots in its low 6 bits |
+///   id      | word offset (32 bits), the number in a slot (core/shared_number_table.hpp) |
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cstdint>
-#include <memory>
 #include <mutex>
 #include <utility>
-#include <vector>
 
-#include "voxdag/core/number_table.hpp"
 #include "voxdag/core/page_vector.hpp"
+#include "voxdag/core/shared_number_table.hpp"
 
 namespace voxdag {
 
@@ -41,7 +35,7 @@ class NodeStore {
     std::uint32_t next = 0, end = 0;
   };
 
-  explicit NodeStore(MemoryBudget& budget) : budget_(&budget) {}
+  explicit NodeStore(MemoryBudget& budget) : table_(&budget), budget_(&budget) {}
   ~NodeStore() { release(); }
   NodeStore(const NodeStore&) = delete;
   NodeStore& operator=(const NodeStore&) = delete;
@@ -52,11 +46,7 @@ class NodeStore {
   NodeId intern(const std::uint32_t* words, int count, std::uint64_t hash, Run& run);
 
   /// Starts loading the slot that intern() of a node with this hash reads first.
-  void prefetch(std::uint64_t hash) const {
-    const NumberSlots table = table_of(hash);
-    if (table.slots != nullptr)
-      __builtin_prefetch(table.slots + table.first_of(NumberSlots::tag_of(hash)));
-  }
+  void prefetch(std::uint64_t hash) const { table_.prefetch(hash); }
   /// Starts loading the words that intern() compares next. Reads the slot, so call it when the load
   /// of prefetch() has had time to finish.
   void prefetch_found(std::uint64_t hash) const;
@@ -78,11 +68,11 @@ class NodeStore {
   }
   /// Returns a number greater than every id.
   std::uint32_t end_id() const { return end_; }
-  std::uint64_t node_count() const;
-  std::uint64_t word_count() const;
+  std::uint64_t node_count() const { return table_.count(); }
+  std::uint64_t word_count() const { return table_.weight(); }
 
-  /// Frees the slots; only words() may be called afterwards. Not thread-safe.
-  void release_slots();
+  /// Frees the slots; only words() and the counts may be called afterwards. Not thread-safe.
+  void release_slots() { table_.release(); }
   /// Frees everything. Not thread-safe.
   void release();
 
@@ -91,43 +81,16 @@ class NodeStore {
   // It is divided into eight runs, or into runs of 2^kMaxRunBits words.
   static constexpr int kFirstChunkBits = 9, kRunsBits = 3, kMaxRunBits = 17;
   static constexpr int kChunks = 32 - kFirstChunkBits + 1;
-  static constexpr int kShardBits = 4, kShards = 1 << kShardBits;
-
-  struct alignas(64) Shard {
-    std::atomic_flag lock = ATOMIC_FLAG_INIT;
-    bool growing = false;
-    std::uint32_t node_count = 0;
-    std::uint64_t word_count = 0;
-    // Old tables keep their addresses until release_slots(), because another thread may be reading
-    // them. Their memory is freed and reads as zeros: a lookup finds nothing there and continues in
-    // the newest table.
-    std::vector<PageVector<std::uint64_t>> tables;
-  };
 
   static int chunk_of(std::uint32_t offset) {
     return std::bit_width((offset >> kFirstChunkBits) + 1) - 1;
   }
   static std::uint32_t chunk_begin(int chunk) { return ((1u << chunk) - 1) << kFirstChunkBits; }
 
-  static std::uint32_t shard_of(std::uint64_t hash) {
-    return static_cast<std::uint32_t>(hash >> (64 - kShardBits));
-  }
-
-  /// Returns the table of the hash's shard; `slots` is null before the shard's first node.
-  NumberSlots table_of(std::uint64_t hash) const {
-    const std::uint64_t packed = tables_[shard_of(hash)].load(std::memory_order_acquire);
-    return {reinterpret_cast<std::uint64_t*>(packed & ~std::uint64_t{63}),
-            std::uint64_t{1} << (packed & 63)};
-  }
-
   void take_run(Run& run);
-  void grow(std::uint32_t shard_index);
 
-  // Kept apart from the shards, because every lookup reads these while adding a node writes to the
-  // shards.
-  alignas(64) std::array<std::atomic<std::uint64_t>, kShards> tables_{};
+  SharedNumberTable table_;
   std::array<PageVector<std::uint32_t>, kChunks> chunks_;
-  std::unique_ptr<Shard[]> shards_{new Shard[kShards]};
   MemoryBudget* budget_;
   std::mutex runs_mutex_;
   std::uint32_t end_ = 0;

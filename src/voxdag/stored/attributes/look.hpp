@@ -50,42 +50,84 @@ struct LookView {
   VOXDAG_HD bool has_materials() const { return dag.attributes.has_materials(); }
 };
 
+/// Sets a cell and its level to those of the cell of the finest level with attributes around it, if
+/// the level is finer. The grid of the cell may have more levels than the DAG.
+VOXDAG_HD inline void clamp_to_finest(const ColoredDagView& colored, Vec3i& cell, int& level) {
+  const int finer = level - colored.attributes.index.finest_level;
+  if (finer <= 0) return;
+  cell = {cell.x >> finer, cell.y >> finer, cell.z >> finer};
+  level -= finer;
+}
+
 /// Sets `number` to the number of a cell of `level`, or of its ancestor of the finest level with
 /// attributes if `level` is finer. The grid of the cell may have more or fewer levels than that of
 /// the DAG. Returns false if the DAG has no attributes there.
 VOXDAG_HD inline bool find_number(const ColoredDagView& colored, Vec3i cell, int level,
                                   std::uint64_t& number) {
-  const int finer = level - colored.dag.levels;
-  if (finer > 0) {
-    cell = {cell.x >> finer, cell.y >> finer, cell.z >> finer};
-    level = colored.dag.levels;
-  }
+  clamp_to_finest(colored, cell, level);
   return !colored.is_empty() &&
          find_cell_number(colored.dag, colored.attributes.index, cell, level, number);
+}
+
+/// Where the values of a cell are: a number, and what the overlay says.
+struct CellValue {
+  std::uint64_t number = 0;
+  bool is_stored = false;                ///< Whether `number` is set.
+  std::uint32_t overlay = kStoredValue;  ///< A value that replaces the stored one.
+
+  VOXDAG_HD bool exists() const { return is_stored || overlay != kStoredValue; }
+};
+
+/// Returns where a value of the cell of find_number() is. `overlay` is one of colored.overlays.
+VOXDAG_HD inline CellValue find_value(const ColoredDagView& colored,
+                                      const ValueOverlayView& overlay, Vec3i cell, int level) {
+  CellValue found;
+  clamp_to_finest(colored, cell, level);
+  if ((cell.x | cell.y | cell.z) >> level != 0) return found;
+  const std::uint32_t reference = overlay_at(overlay, cell, level);
+  if (reference >= kOverlayValue) {
+    found.overlay = reference;
+    return found;
+  }
+  found.is_stored = find_number(colored, cell, level, found.number);
+  if (!found.is_stored) found.overlay = first_in_overlay(overlay, reference);
+  return found;
 }
 
 /// Returns the material of the cell of find_number(); kMaxMaterials if there is none. `colored`
 /// must have materials.
 VOXDAG_HD inline std::uint32_t material_at(const ColoredDagView& colored, Vec3i cell, int level) {
-  std::uint64_t number = 0;
-  return find_number(colored, cell, level, number)
-             ? read_material(colored.attributes.materials, number)
-             : kMaxMaterials;
+  const CellValue found = find_value(colored, colored.overlays.materials, cell, level);
+  if (found.overlay != kStoredValue) return material_of_overlay(found.overlay);
+  return found.is_stored ? read_material(colored.attributes.materials, found.number)
+                         : kMaxMaterials;
 }
 
 /// Returns the colour and the normal that a DAG stores for the cell of find_number().
 VOXDAG_HD inline StoredLook look_at(const ColoredDagView& colored, Vec3i cell, int level) {
   StoredLook look;
   const DagAttributesView& attributes = colored.attributes;
-  std::uint64_t number = 0;
-  if (!find_number(colored, cell, level, number)) return look;
-  look.has_color = attributes.has_colors();
-  if (look.has_color) {
-    const Value8 color = read_value(attributes.colors, number);
-    for (int c = 0; c < 3; ++c) look.color[c] = static_cast<float>(color[c]) / 255;
+  CellValue color, normal;
+  if (colored.overlays.is_empty()) {
+    color.is_stored = find_number(colored, cell, level, color.number);
+    normal = color;
+  } else {
+    if (attributes.has_colors()) color = find_value(colored, colored.overlays.colors, cell, level);
+    if (attributes.has_normals())
+      normal = find_value(colored, colored.overlays.normals, cell, level);
   }
-  look.has_normal = attributes.has_normals();
-  if (look.has_normal) look.normal = unpack_normal(read_value(attributes.normals, number));
+  look.has_color = attributes.has_colors() && color.exists();
+  if (look.has_color) {
+    const Value8 value = color.overlay != kStoredValue
+                             ? value_of_overlay(color.overlay)
+                             : read_value(attributes.colors, color.number);
+    for (int c = 0; c < 3; ++c) look.color[c] = static_cast<float>(value[c]) / 255;
+  }
+  look.has_normal = attributes.has_normals() && normal.exists();
+  if (look.has_normal)
+    look.normal = unpack_normal(normal.overlay != kStoredValue
+                                    ? value_of_overlay(normal.overlay)
+                                    : read_value(attributes.normals, normal.number));
   return look;
 }
 

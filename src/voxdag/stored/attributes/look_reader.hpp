@@ -54,6 +54,7 @@ class LookReader {
       if (has_colors_) stored_srgb8(look_.esvo, voxel, result.color);
       return result;
     }
+    if (!look_.dag.overlays.is_empty()) return read_edited(cell, level);
     std::uint64_t number = 0;
     if (!find_number(look_.dag, cell, level, number)) return result;
     if (has_normals_) result.normal = unpack_normal(normals_.value(number));
@@ -62,6 +63,24 @@ class LookReader {
       result.material =
           static_cast<std::uint16_t>(read_material(look_.dag.attributes.materials, number));
     return result;
+  }
+
+  VoxelLook read_edited(Vec3i cell, int level) {
+    VoxelLook result;
+    const ValueOverlays& overlays = look_.dag.overlays;
+    if (has_normals_)
+      if (const auto found = find_value(look_.dag, overlays.normals, cell, level); found.exists())
+        result.normal = unpack_normal(value(normals_, found));
+    if (has_colors_)
+      if (const auto found = find_value(look_.dag, overlays.colors, cell, level); found.exists())
+        result.color = value(colors_, found);
+    if (has_materials_)
+      result.material = static_cast<std::uint16_t>(material_at(look_.dag, cell, level));
+    return result;
+  }
+  static Value8 value(PageReader& reader, const CellValue& found) {
+    return found.overlay != kStoredValue ? value_of_overlay(found.overlay)
+                                         : reader.value(found.number);
   }
 
   LookView look_;

@@ -2,6 +2,7 @@
 /// The colours, normals and materials of a DAG's cells.
 #include "voxdag/stored/attributes/cell_index_lookup.hpp"
 #include "voxdag/stored/attributes/material_ids.hpp"
+#include "voxdag/stored/attributes/value_overlay.hpp"
 #include "voxdag/stored/attributes/value_pages.hpp"
 
 namespace voxdag {
@@ -19,10 +20,13 @@ struct DagAttributesView {
   VOXDAG_HD bool is_empty() const { return !has_colors() && !has_normals() && !has_materials(); }
 };
 
-/// A DAG with the attributes of its cells.
+/// A DAG with the attributes of its cells. If the DAG is being edited, `dag` is the DAG to which
+/// the attributes belong, and `overlays` have the values that edits gave to its cells and to new
+/// ones.
 struct ColoredDagView {
   SvdagView dag;
   DagAttributesView attributes;
+  ValueOverlays overlays{};
 
   VOXDAG_HD bool is_empty() const { return dag.is_empty() || attributes.is_empty(); }
 };

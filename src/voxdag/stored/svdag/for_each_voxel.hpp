@@ -70,7 +70,7 @@ void walk_leaf_blocks(const SvdagView& dag, const Box3i& window, int level, std:
 /// beyond the grid. The view must be valid. O(blocks met) time, a stack of L frames.
 template <class Fn>
 void for_each_leaf_block(const SvdagView& dag, const Box3i& window, const Fn& fn) {
-  if (!dag.is_empty()) detail::walk_leaf_blocks(dag, window, 0, 0, {0, 0, 0}, fn);
+  if (!dag.is_empty()) detail::walk_leaf_blocks(dag, window, 0, dag.root, {0, 0, 0}, fn);
 }
 
 /// Calls fn(Vec3i voxel) for every voxel in the half-open `window`, in the order of the view's

@@ -39,6 +39,10 @@ struct SvdagView {
   /// entries from L-2 on all hold the number of words in `nodes`.
   std::uint64_t level_begin[kMaxLevels + 1] = {};
   int levels = kMinLevels;  ///< L
+  /// The root: a word index, or the leaf block if L is 2. 0 in canonical order. A DAG that is being
+  /// edited (edit/editable_dag.hpp) has its root elsewhere, and nodes beyond the last level; then
+  /// only functions that walk down from the root may take the view.
+  std::uint32_t root = 0;
 
   VOXDAG_HD std::uint64_t node_words() const { return level_begin[levels - 2]; }
   VOXDAG_HD bool is_empty() const { return leaf_block_count == 0; }

@@ -10,7 +10,7 @@ namespace voxdag {
 VOXDAG_HD inline std::uint64_t leaf_block_at(const SvdagView& dag, Vec3i voxel) {
   const auto outside = [&](std::int32_t c) { return c < 0 || c >> dag.levels != 0; };
   if (dag.is_empty() || outside(voxel.x) || outside(voxel.y) || outside(voxel.z)) return 0;
-  std::uint32_t at = 0;
+  std::uint32_t at = dag.root;
   for (int level = 0; level < dag.levels - 2; ++level) {
     const int shift = dag.levels - level - 1;
     const int child = child_index(voxel, shift);
@@ -25,7 +25,7 @@ VOXDAG_HD inline std::uint64_t leaf_block_at(const SvdagView& dag, Vec3i voxel) 
 /// has 2^(L-level) voxels a side, and coordinates in [0, 2^level). Returns false outside the grid.
 VOXDAG_HD inline bool svdag_contains(const SvdagView& dag, Vec3i cell, int level) {
   if (dag.is_empty() || (cell.x | cell.y | cell.z) >> level != 0) return false;
-  std::uint32_t at = 0;
+  std::uint32_t at = dag.root;
   for (int l = 0; l < level; ++l) {
     const int shift = level - 1 - l;
     const int child = child_index(cell, shift);

@@ -4,7 +4,9 @@ uniform usampler2D u_nodes;   // r: the words of NODE
 uniform usampler2D u_leaves;  // rg: the leaf blocks, lower half first
 uniform int u_levels;         // L of the file
 uniform int u_shown;          // cells of this level count as voxels; at most L
+uniform uint u_root;          // kNoNode: the DAG has no voxels
 
+const uint kNoNode = 0xFFFFFFFFu;
 const uint kTexelMask = uint((1 << TEXEL_BITS) - 1);
 
 ivec2 texel(uint i) { return ivec2(int(i & kTexelMask), int(i >> TEXEL_BITS)); }

@@ -1,4 +1,5 @@
-// Colours and normals of cells: the port of stored/attributes/cell_index_lookup.hpp and stored/attributes/value_pages.hpp.
+// Colours and normals of cells: the port of stored/attributes/cell_index_lookup.hpp, value_pages.hpp, value_overlay.hpp and
+// look.hpp.
 // Numbers of cells and byte addresses fit into 32 bits (the loader takes care of it).
 
 uniform usampler2D u_slots;    // r: the words of CIDX, 32 bits each
@@ -40,14 +41,18 @@ uvec2 blockBefore(uvec2 block, uint octant) {
   return uvec2(block.x, block.y & ((1u << (8u * (octant - 4u))) - 1u));
 }
 
-// Finds the number of a cell that exists. Cells finer than m have their ancestor's number.
-uint cellNumber(ivec3 cell, int level) {
+// Finds the number of a cell of the DAG as it was read. Cells finer than m have their ancestor's number. Returns false if
+// that DAG has no such cell.
+bool findNumber(ivec3 cell, int level, out uint number) {
   int last = min(level, u_finest);
   uint at = 0u, sum = 0u;
+  number = 0u;
   for (int l = 0; l < last; ++l) {
     uint child = childIndex(cell, level - 1 - l);
     if (l < u_levels - DAG_LEAF_LEVELS) {
-      uint before = bitCount8(nodeWord(at) & ((1u << child) - 1u));
+      uint mask = nodeWord(at);
+      if ((mask >> child & 1u) == 0u) return false;
+      uint before = bitCount8(mask & ((1u << child) - 1u));
       if (before == 0u)
         sum += 1u;
       else if (l + 1 < u_finest)
@@ -58,18 +63,41 @@ uint cellNumber(ivec3 cell, int level) {
       continue;
     }
     uvec2 block = leafBlock(at);
+    uint octant = octantMask(block, child);
+    if (octant == 0u) return false;
     uvec2 earlier = blockBefore(block, child);
     sum += 1u + bitCount8(octantsOf(earlier));
     if (u_finest == u_levels) {
       sum += bitCount32(earlier.x) + bitCount32(earlier.y);
       if (last == u_levels) {
         uint voxel = childIndex(cell, 0);
-        sum += 1u + bitCount8(octantMask(block, child) & ((1u << voxel) - 1u));
+        if ((octant >> voxel & 1u) == 0u) return false;
+        sum += 1u + bitCount8(octant & ((1u << voxel) - 1u));
       }
     }
     break;
   }
-  return sum;
+  number = sum;
+  return true;
+}
+
+// Values that edits gave to cells. A reference is 0: the stored values; at least kOverlayValue: a value; else words.
+uniform usampler2D u_overlay;
+const uint kOverlayValue = 0x80000000u;
+
+bool isWords(uint reference) { return reference != 0u && reference < kOverlayValue; }
+uint overlayWord(uint reference, uint child) { return texelFetch(u_overlay, texel(8u * reference + child), 0).x; }
+
+// Returns what the overlay with a root says of a cell. `is_stored`: the DAG as it was read has the cell.
+uint overlayAt(uint reference, ivec3 cell, int level, bool is_stored) {
+  for (int l = 0; l < level && isWords(reference); ++l) reference = overlayWord(reference, childIndex(cell, level - 1 - l));
+  // The cell has no value itself: those of its parts stand for it.
+  while (!is_stored && isWords(reference)) {
+    uint child = 0u;
+    while (child < 7u && overlayWord(reference, child) == 0u) ++child;
+    reference = overlayWord(reference, child);
+  }
+  return reference;
 }
 
 // A place in the words of values.
@@ -138,4 +166,14 @@ uvec3 readValue(highp usampler2D words, highp usampler2D pages, uint end_code, u
   skipBits(place, index * w);
   uint k = bitsAt(words, place, w), most = (1u << w) - 1u;
   return (2u * (e0 * (most - k) + e1 * k) + most) / (2u * most);
+}
+
+// Reads a value of a cell: that of the overlay with a root, else the stored one. Returns false if there is none.
+bool readLook(uint overlay, ivec3 cell, int level, bool is_stored, uint number, highp usampler2D words, highp usampler2D pages,
+              uint end_code, out uvec3 value) {
+  uint reference = overlayAt(overlay, cell, level, is_stored);
+  value = uvec3(reference, reference >> 8u, reference >> 16u) & 0xFFu;
+  if (reference >= kOverlayValue) return true;
+  if (is_stored) value = readValue(words, pages, end_code, number);
+  return is_stored;
 }

@@ -2,6 +2,7 @@
 
 uniform usampler2D u_material_words, u_material_pages, u_hidden_materials;  // the last: 1 for each id that is hidden
 uniform int u_material_bits;  // of an id
+uniform uint u_material_overlay;
 
 uint materialOf(uint number) {
   uint begin = texelFetch(u_material_pages, texel(number / uint(PAGES_PAGE_VALUES)), 0).x;
@@ -23,5 +24,10 @@ uint materialOf(uint number) {
 }
 
 bool isLeftOut(ivec3 cell, int level) {
-  return texelFetch(u_hidden_materials, texel(materialOf(cellNumber(cell, level))), 0).x != 0u;
+  uint number;
+  bool is_stored = findNumber(cell, level, number);
+  uint reference = overlayAt(u_material_overlay, cell, level, is_stored);
+  if (reference < kOverlayValue && !is_stored) return false;
+  uint id = reference < kOverlayValue ? materialOf(number) : reference & ~kOverlayValue;
+  return texelFetch(u_hidden_materials, texel(id), 0).x != 0u;
 }

@@ -77,7 +77,7 @@ LayerFit fitLayer(int level, ivec3 cell, vec3 offset, vec3 front) {
     int apart = differ.x | differ.y | differ.z;
     int up = apart == 0 ? 0 : int(floatBitsToUint(float(apart)) >> 23u) - 126;
     int common_level = block_level - up;
-    uint common_node = 0u;
+    uint common_node = u_root;
     if (descend(common_node, 0, common_level, lo >> up)) {
       for (int corner = 0; corner < 8; ++corner) {
         ivec3 at = block + (ivec3(corner, corner >> 1, corner >> 2) & 1);

@@ -4,6 +4,7 @@ uniform float u_cube_pixels;
 uniform float u_hatch_period;               // of the lines on cut faces, in grid sides; 0: none
 uniform int u_color_bits, u_normal_bits;  // precision of the stored values; -1: none
 uniform usampler2D u_color_words, u_color_pages, u_normal_words, u_normal_pages;
+uniform uint u_color_overlay, u_normal_overlay;
 
 struct ViewSample {
   vec3 place;         // relative to the grid's corner, in its sides; on the surface or above it
@@ -46,13 +47,15 @@ ViewSample viewSample(GridRay ray, CellHit hit, vec3 from, vec3 direction, float
   float color = -1.0;
 #ifdef HAS_LOOK
   if (u_finest >= 0) {
-    uint number = cellNumber(cell, hit.level);
-    if (u_color_bits >= 0) {
-      uvec3 rgb = readValue(u_color_words, u_color_pages, uint(u_color_bits), number);
-      color = float(rgb.x | rgb.y << 8u | rgb.z << 16u);
-    }
-    if (u_normal_bits >= 0) {
-      vec3 stored = vec3(ivec3(readValue(u_normal_words, u_normal_pages, uint(u_normal_bits), number)) - 128);
+    uint number;
+    uvec3 value;
+    bool is_stored = findNumber(cell, hit.level, number);
+    if (u_color_bits >= 0 &&
+        readLook(u_color_overlay, cell, hit.level, is_stored, number, u_color_words, u_color_pages, uint(u_color_bits), value))
+      color = float(value.x | value.y << 8u | value.z << 16u);
+    if (u_normal_bits >= 0 &&
+        readLook(u_normal_overlay, cell, hit.level, is_stored, number, u_normal_words, u_normal_pages, uint(u_normal_bits), value)) {
+      vec3 stored = vec3(ivec3(value) - 128);
       stored = stored == vec3(0.0) ? vec3(0.0, 1.0, 0.0) : normalize(stored);
       float facing = dot(stored, view);
       bool of_back = facing < -NORMAL_LEANING || (facing < 0.0 && dot(stored, entered) < -NORMAL_OPPOSITE);

@@ -7,15 +7,15 @@ int g_steps = 0;  // steps of all casts of this invocation
 // at most stop_start + stop_per_t * T; see trace/stop_below_size.hpp.
 bool castRay(GridRay ray, float stop_start, float stop_per_t, out CellHit hit) {
   hit = CellHit(0.0, uvec3(0u), 0, 0u);
-  if (!(ray.t_min <= ray.t_max)) return false;
+  if (!(ray.t_min <= ray.t_max) || u_root == kNoNode) return false;
   vec3 o = ray.origin, inv = ray.inverse;
   float t = ray.t_min;
   vec3 leave = (o - vec3(1.0)) * inv;
   if (min(min(leave.x, leave.y), leave.z) <= t) return false;
 
   uint stack[DAG_MAX_LEVELS];
-  uint node = 0u;
-  uint mask = childMask(0u, 0);
+  uint node = u_root;
+  uint mask = childMask(node, 0);
   uvec3 corner = uvec3(0x3F800000u);
   int bit = 22;
   uvec3 up = uvec3(greaterThan((o - uintBitsToFloat(corner | 1u << bit)) * inv, vec3(t)));

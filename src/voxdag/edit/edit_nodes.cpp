@@ -1,0 +1,416 @@
+#include "voxdag/edit/edit_nodes.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cstring>
+
+#include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/stored/svdag/long_svdag.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Memory is counted in the steps in which it becomes resident.
+constexpr std::uint64_t kStep = kHugePage;
+constexpr std::uint64_t kMaxBlocks = 0xFFFFFFFFull;
+/// A writer takes runs of so many words and blocks.
+constexpr std::uint32_t kRunWords = 1024, kRunBlocks = 512;
+/// The base is hashed in parts of about this many words.
+constexpr std::uint64_t kPartWords = 1 << 16;
+
+std::uint64_t rounded_up(std::uint64_t bytes) { return (bytes + kStep - 1) / kStep * kStep; }
+
+template <class T>
+void copy_in_parts(const T* from, std::uint64_t count, T* to) {
+  constexpr std::uint64_t kPart = 1 << 20;
+  parallel_for((count + kPart - 1) / kPart, [&](std::size_t part) {
+    const std::uint64_t first = part * kPart;
+    std::memcpy(to + first, from + first, std::min(kPart, count - first) * sizeof(T));
+  });
+}
+
+std::uint64_t hash_block(std::uint64_t voxels) {
+  const std::uint32_t words[] = {static_cast<std::uint32_t>(voxels),
+                                 static_cast<std::uint32_t>(voxels >> 32)};
+  return hash_words(words, 2);
+}
+
+int words_of(const std::uint32_t* node) { return 1 + popcount(child_mask(node)); }
+
+/// Adds a number to a table that other threads fill, too.
+void add_shared(const NumberSlots& table, std::uint64_t hash, std::uint32_t number) {
+  const std::uint32_t tag = NumberSlots::tag_of(hash);
+  const std::uint64_t slot = NumberSlots::slot_of(tag, number);
+  for (std::uint64_t i = table.first_of(tag);; i = table.next(i)) {
+    std::uint64_t free = 0;
+    if (std::atomic_ref(table.slots[i])
+            .compare_exchange_strong(free, slot, std::memory_order_relaxed))
+      return;
+  }
+}
+
+/// Calls hash_of(i) for all i in [0, count), and adds numbers and hashes to a table. Slots are
+/// loaded some items ahead, because each is a cache miss.
+class SlotFiller {
+ public:
+  explicit SlotFiller(const NumberSlots& table) : table_(table) {}
+  void add(std::uint64_t hash, std::uint32_t number) {
+    Waiting& place = waiting_[next_ % kAhead];
+    if (next_ >= kAhead) add_shared(table_, place.hash, place.number);
+    place = {hash, number};
+    ++next_;
+    __builtin_prefetch(table_.slots + table_.first_of(NumberSlots::tag_of(hash)), 1);
+  }
+  void finish() {
+    for (std::uint64_t i = next_ - std::min<std::uint64_t>(next_, kAhead); i < next_; ++i)
+      add_shared(table_, waiting_[i % kAhead].hash, waiting_[i % kAhead].number);
+  }
+
+ private:
+  static constexpr std::uint64_t kAhead = 16;
+  struct Waiting {
+    std::uint64_t hash = 0;
+    std::uint32_t number = 0;
+  };
+  NumberSlots table_;
+  std::array<Waiting, kAhead> waiting_{};
+  std::uint64_t next_ = 0;
+};
+
+/// Shortens a run to end at `end`, if it reaches beyond.
+void trim_run(EditRun& run, std::uint64_t end) {
+  if (run.first + run.count > end) run.count = end > run.first ? end - run.first : 0;
+}
+
+}  // namespace
+
+EditNodes::EditNodes(const SvdagView& base, Work work) : work_(work) {
+  if (base.node_words() > kMaxPlainWords)
+    throw Error("the DAG is too large to edit: its nodes have more than 2^32 words");
+  assert(base.root == 0);
+  words_ = PageVector<std::uint32_t>::zeros(kMaxPlainWords);
+  blocks_ = PageVector<std::uint64_t>::zeros(kMaxBlocks);
+  count_memory(base.node_words(), base.leaf_block_count);
+  copy_in_parts(base.nodes, base.node_words(), words_.data());
+  copy_in_parts(base.leaf_blocks, base.leaf_block_count, blocks_.data());
+  base_ = base;
+  base_.nodes = words_.data();
+  base_.leaf_blocks = blocks_.data();
+  words_end_ = base.node_words();
+  blocks_end_ = base.leaf_block_count;
+  full_.fill(kNone);
+  for (int level = 0; level <= base.levels - 2; ++level) {
+    tables_.push_back(std::make_unique<SharedNumberTable>(work.memory));
+    hash_base(level);
+  }
+}
+
+EditNodes::~EditNodes() {
+  if (work_.memory == nullptr) return;
+  for (const auto& slots : base_slots_) work_.memory->release(slots.bytes());
+}
+
+void EditNodes::hash_base(int level) {
+  // Finds the nodes where parts begin, and counts nodes.
+  std::vector<std::uint64_t> parts;
+  std::uint64_t nodes = 0;
+  const bool is_leaf = level == levels() - 2;
+  const std::uint64_t begin = is_leaf ? 0 : base_.level_begin[level],
+                      end = is_leaf ? base_.leaf_block_count : base_.level_begin[level + 1];
+  if (is_leaf) {
+    nodes = end;
+    for (std::uint64_t at = 0; at < end; at += kPartWords) parts.push_back(at);
+  } else {
+    std::uint64_t next = begin;
+    for (std::uint64_t at = begin; at < end; ++nodes) {
+      if (at >= next) {
+        parts.push_back(at);
+        next = at + kPartWords;
+      }
+      at += static_cast<std::uint64_t>(words_of(base_.nodes + at));
+    }
+  }
+  parts.push_back(end);
+  const std::size_t slots = nodes + nodes / 2 + 1;
+  if (work_.memory != nullptr) work_.memory->reserve((slots * 8 + 4095) / 4096 * 4096);
+  base_slots_.push_back(PageVector<std::uint64_t>::zeros(slots));
+  const NumberSlots table{base_slots_.back().data(), slots};
+  parallel_for(parts.size() - 1, [&](std::size_t part) {
+    work_.poll();
+    SlotFiller filler(table);
+    for (std::uint64_t at = parts[part]; at < parts[part + 1];) {
+      const auto number = static_cast<std::uint32_t>(at);
+      if (is_leaf) {
+        filler.add(hash_block(base_.leaf_blocks[at++]), number);
+      } else {
+        const int count = words_of(base_.nodes + at);
+        filler.add(hash_words(base_.nodes + at, count), number);
+        at += static_cast<std::uint64_t>(count);
+      }
+    }
+    filler.finish();
+  });
+}
+
+SvdagView EditNodes::view(std::uint32_t root) const {
+  SvdagView view = base_;
+  view.root = root == kNone ? 0 : root;
+  view.leaf_block_count = root == kNone ? 0 : blocks_end_;
+  return view;
+}
+
+EditNodes::Writer::~Writer() {
+  nodes_.give_back_words(words_);
+  nodes_.give_back_blocks(blocks_);
+}
+
+EditNodes::Writer::Pending EditNodes::Writer::node_of(const std::uint32_t (&children)[8]) {
+  Pending node;
+  node.words[0] = 0;
+  std::uint32_t count = 1;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    if (children[i] == kNone) continue;
+    node.words[0] |= 1u << i;
+    node.words[count++] = children[i];
+  }
+  if (count == 1) return node;
+  node.count = count;
+  node.hash = hash_words(node.words, static_cast<int>(count));
+  return node;
+}
+
+EditNodes::Writer::Pending EditNodes::Writer::block_of(std::uint64_t voxels) {
+  Pending node;
+  node.words[0] = static_cast<std::uint32_t>(voxels);
+  node.words[1] = static_cast<std::uint32_t>(voxels >> 32);
+  if (voxels == 0) return node;
+  node.count = 2;
+  node.hash = hash_words(node.words, 2);
+  return node;
+}
+
+void EditNodes::Writer::prefetch(int level, const Pending& node) const {
+  const auto& slots = nodes_.base_slots_[static_cast<std::size_t>(level)];
+  const NumberSlots base{const_cast<std::uint64_t*>(slots.data()), slots.size()};
+  __builtin_prefetch(base.slots + base.first_of(NumberSlots::tag_of(node.hash)));
+  nodes_.tables_[static_cast<std::size_t>(level)]->prefetch(node.hash);
+}
+
+void EditNodes::Writer::prefetch_found(int level, const Pending& node) const {
+  const auto& slots = nodes_.base_slots_[static_cast<std::size_t>(level)];
+  std::uint64_t found = 0;
+  NumberSlots{const_cast<std::uint64_t*>(slots.data()), slots.size()}.find(
+      NumberSlots::tag_of(node.hash), [](std::uint32_t) { return true; }, found);
+  std::uint32_t number = NumberSlots::number_of(found);
+  if (found == 0 && !nodes_.tables_[static_cast<std::size_t>(level)]->find_tag(node.hash, number))
+    return;
+  if (level == nodes_.levels() - 2)
+    __builtin_prefetch(nodes_.blocks_.data() + number);
+  else
+    __builtin_prefetch(nodes_.words(number));
+}
+
+std::uint32_t EditNodes::Writer::intern(int level, const Pending& node) {
+  if (node.count == 0) return kNone;
+  const bool is_leaf = level == nodes_.levels() - 2;
+  const std::uint64_t voxels = node.words[0] | std::uint64_t{node.words[1]} << 32;
+  const auto is_equal = [&](std::uint32_t number) {
+    if (is_leaf) return nodes_.block(number) == voxels;
+    const std::uint32_t* const stored = nodes_.words(number);
+    // If the first words are equal, the lengths are equal, so the other words may be read.
+    return stored[0] == node.words[0] &&
+           std::equal(node.words + 1, node.words + node.count, stored + 1);
+  };
+  PageVector<std::uint64_t>& slots = nodes_.base_slots_[static_cast<std::size_t>(level)];
+  std::uint64_t found = 0;
+  NumberSlots{slots.data(), slots.size()}.find(NumberSlots::tag_of(node.hash), is_equal, found);
+  if (found != 0) return NumberSlots::number_of(found);
+  SharedNumberTable& table = *nodes_.tables_[static_cast<std::size_t>(level)];
+  if (is_leaf)
+    return table.find_or_add(
+        node.hash, 1, is_equal,
+        [&] {
+          if (blocks_.next == blocks_.end) nodes_.take_blocks(blocks_);
+          nodes_.blocks_[blocks_.next] = voxels;
+          return blocks_.next;
+        },
+        [&] { ++blocks_.next; });
+  return table.find_or_add(
+      node.hash, node.count, is_equal,
+      [&] {
+        if (words_.end - words_.next < node.count) nodes_.take_words(words_, node.count);
+        std::memcpy(nodes_.words_.data() + words_.next, node.words, node.count * 4);
+        return words_.next;
+      },
+      [&] { words_.next += node.count; });
+}
+
+void EditNodes::add_full() {
+  if (full(0) != kNone) return;
+  Writer writer(*this);
+  std::uint32_t node = writer.intern_block(~std::uint64_t{0});
+  full_[static_cast<std::size_t>(levels() - 2)] = node;
+  for (int level = levels() - 3; level >= 0; --level) {
+    std::uint32_t children[8];
+    std::fill_n(children, 8, node);
+    full_[static_cast<std::size_t>(level)] = node = writer.intern(level, children);
+  }
+}
+
+void EditNodes::FreeRuns::add(Run run) {
+  if (run.next == run.end) return;
+  lists[std::min(9u, run.end - run.next)].push_back(run);
+  count += run.end - run.next;
+}
+
+EditNodes::Run EditNodes::FreeRuns::take(std::uint32_t least, std::uint32_t most) {
+  for (std::size_t size = least; size < lists.size(); ++size) {
+    if (lists[size].empty()) continue;
+    Run run = lists[size].back();
+    lists[size].pop_back();
+    count -= run.end - run.next;
+    if (run.end - run.next > most) {
+      add({run.next + most, run.end});
+      run.end = run.next + most;
+    }
+    return run;
+  }
+  return {};
+}
+
+void EditNodes::take_words(Run& run, std::uint32_t count) {
+  give_back_words(run);
+  const std::lock_guard guard(mutex_);
+  run = free_words_.take(count, kRunWords);
+  if (run.next == run.end) {
+    if (words_end_ + kRunWords > kMaxPlainWords)
+      throw Error(
+          "the DAG is too large: its nodes have more words than 32-bit pointers can address");
+    count_memory(words_end_ + kRunWords, blocks_end_);
+    const auto begin = static_cast<std::uint32_t>(words_end_);
+    run = {begin, begin + kRunWords};
+    words_end_ += kRunWords;
+  }
+  note_run(changes_.words, run.next, run.end - run.next);
+}
+
+void EditNodes::take_blocks(Run& run) {
+  const std::lock_guard guard(mutex_);
+  run = free_blocks_.take(1, kRunBlocks);
+  if (run.next == run.end) {
+    if (blocks_end_ + kRunBlocks > kMaxBlocks)
+      throw Error("the DAG is too large: it has more leaf blocks than 32-bit pointers can address");
+    count_memory(words_end_, blocks_end_ + kRunBlocks);
+    const auto begin = static_cast<std::uint32_t>(blocks_end_);
+    run = {begin, begin + kRunBlocks};
+    blocks_end_ += kRunBlocks;
+  }
+  note_run(changes_.blocks, run.next, run.end - run.next);
+}
+
+void EditNodes::give_back_words(Run& run) {
+  if (run.next == run.end) return;
+  const std::lock_guard guard(mutex_);
+  if (run.end == words_end_) {
+    words_end_ = run.next;
+    if (!changes_.words.empty()) trim_run(changes_.words.back(), words_end_);
+  } else {
+    words_[run.next] = kUnused + (run.end - run.next);
+    free_words_.add(run);
+  }
+  run = {};
+}
+
+void EditNodes::give_back_blocks(Run& run) {
+  if (run.next == run.end) return;
+  const std::lock_guard guard(mutex_);
+  if (run.end == blocks_end_) {
+    blocks_end_ = run.next;
+    if (!changes_.blocks.empty()) trim_run(changes_.blocks.back(), blocks_end_);
+  } else {
+    free_blocks_.add(run);
+  }
+  run = {};
+}
+
+std::uint64_t EditNodes::added_nodes() const {
+  std::uint64_t count = collected_nodes_;
+  for (const auto& table : tables_) count += table->count();
+  return count;
+}
+
+void EditNodes::count_memory(std::uint64_t words_end, std::uint64_t blocks_end) {
+  const std::uint64_t bytes = rounded_up(words_end * 4) + rounded_up(blocks_end * 8);
+  if (bytes <= memory_.bytes()) return;
+  if (memory_.bytes() == 0)
+    memory_ = MemoryReservation(work_.memory, bytes);
+  else
+    memory_.resize(bytes);
+}
+
+void EditNodes::mark(int level, std::uint32_t node) {
+  if (node == kNone) return;
+  const bool is_leaf = level == levels() - 2;
+  const std::uint64_t base = is_leaf ? base_.leaf_block_count : base_.node_words();
+  if (node < base) return;
+  const auto bit = (is_leaf ? block_marks_ : word_marks_)[node - base];
+  if (bit) return;
+  (is_leaf ? block_marks_ : word_marks_)[node - base] = true;
+  if (is_leaf) return;
+  for (int i = 1; i < words_of(words(node)); ++i) mark(level + 1, words(node)[i]);
+}
+
+bool EditNodes::is_marked(int level, std::uint32_t node) const {
+  const bool is_leaf = level == levels() - 2;
+  const std::uint64_t base = is_leaf ? base_.leaf_block_count : base_.node_words();
+  return node == kNone || node < base || (is_leaf ? block_marks_ : word_marks_)[node - base];
+}
+
+void EditNodes::collect(std::span<const std::uint32_t> roots) {
+  const std::uint64_t first_word = base_.node_words(), first_block = base_.leaf_block_count;
+  word_marks_.assign(words_end_ - first_word, false);
+  block_marks_.assign(blocks_end_ - first_block, false);
+  for (const std::uint32_t root : roots) mark(0, root);
+  const std::uint64_t nodes_before = added_nodes();
+  for (int level = 0; level < levels() - 1; ++level) {
+    if (!is_marked(level, full(level))) full_.fill(kNone);
+    tables_[static_cast<std::size_t>(level)]->retain(
+        [&](std::uint32_t number) { return is_marked(level, number); });
+  }
+  collected_nodes_ += nodes_before - added_nodes();
+  free_words_ = {};
+  Run unused;
+  for (std::uint64_t at = first_word; at <= words_end_;) {
+    const bool is_end = at == words_end_;
+    if (is_end || word_marks_[at - first_word]) {
+      if (unused.next != unused.end) words_[unused.next] = kUnused + (unused.end - unused.next);
+      free_words_.add(unused);
+      unused = {};
+    }
+    if (is_end) break;
+    const std::uint32_t first = words_[at];
+    const std::uint32_t count =
+        first > kUnused ? first - kUnused : static_cast<std::uint32_t>(words_of(&first));
+    if (!word_marks_[at - first_word]) {
+      if (unused.next == unused.end) unused.next = static_cast<std::uint32_t>(at);
+      unused.end = static_cast<std::uint32_t>(at) + count;
+    }
+    at += count;
+  }
+  free_blocks_ = {};
+  unused = {};
+  for (std::uint64_t at = first_block; at <= blocks_end_; ++at) {
+    if (at < blocks_end_ && !block_marks_[at - first_block]) {
+      if (unused.next == unused.end) unused.next = static_cast<std::uint32_t>(at);
+      unused.end = static_cast<std::uint32_t>(at) + 1;
+      continue;
+    }
+    free_blocks_.add(unused);
+    unused = {};
+  }
+  word_marks_ = {};
+  block_marks_ = {};
+}
+
+}  // namespace voxdag
