@@ -9,7 +9,6 @@
 #include "voxdag/core/io/atomic_file.hpp"
 
 namespace voxdag {
-namespace {
 
 /// What minizip writes to. Exceptions must not pass through it.
 struct ZipOutput {
@@ -34,6 +33,8 @@ struct ZipOutput {
     return at <= file.position() ? 0 : -1;
   }
 };
+
+namespace {
 
 ZipOutput& output_of(voidpf stream) { return *static_cast<ZipOutput*>(stream); }
 
