@@ -122,7 +122,9 @@ TEST(Environment, KeepsItsLightWhenItIsPacked) {
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(again[c] / ambient[c], 1, 0.01);
       // Bytes round to 1/256 of the brightest colour. Texels at the sun's edge have a part of it.
-      if (dot(d, towards) < 0.99f) EXPECT_NEAR(map_radiance(after, d)[c], smooth_light(d)[c], 0.03);
+      if (dot(d, towards) < 0.99f) {
+        EXPECT_NEAR(map_radiance(after, d)[c], smooth_light(d)[c], 0.03);
+      }
     }
   }
 }
