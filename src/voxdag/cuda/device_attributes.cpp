@@ -32,11 +32,17 @@ DevicePages upload_pages(ValuePagesView& view) {
 }  // namespace
 
 struct DeviceAttributes::Memory {
+  /// What versions of an edited DAG share.
+  struct Stored {
+    DeviceBuffer<std::uint64_t> sums;
+    DevicePages colors, normals;
+  };
+
   explicit Memory(const DeviceScene& of) : scene(of) {}
 
   DeviceScene scene;  // keeps the DAG in the device's memory
-  DeviceBuffer<std::uint64_t> sums;
-  DevicePages colors, normals;
+  std::shared_ptr<const Stored> stored;
+  std::shared_ptr<const DeviceBuffer<std::uint32_t>> overlay;
   ColoredDagView view;
 };
 
@@ -47,15 +53,45 @@ DeviceAttributes::DeviceAttributes(const DeviceScene& scene, const DagAttributes
       attributes.index.bytes() + attributes.colors.bytes() + attributes.normals.bytes(),
       kColorMemory);
   const auto memory = std::make_shared<Memory>(scene);
+  const auto stored = std::make_shared<Memory::Stored>();
   ColoredDagView& view = memory->view;
   view.dag = scene.view().paper;
   view.attributes = attributes;
-  memory->sums =
+  stored->sums =
       upload(std::span(attributes.index.words, attributes.index.word_count()), kColorMemory);
-  view.attributes.index.words = memory->sums.data();
-  memory->colors = upload_pages(view.attributes.colors);
-  memory->normals = upload_pages(view.attributes.normals);
+  view.attributes.index.words = stored->sums.data();
+  stored->colors = upload_pages(view.attributes.colors);
+  stored->normals = upload_pages(view.attributes.normals);
+  memory->stored = stored;
   memory_ = memory;
+}
+
+DeviceAttributes DeviceAttributes::updated(const DeviceScene& scene, const ValueOverlays& overlays,
+                                           std::uint64_t words,
+                                           const std::vector<EditRun>& changes) const {
+  scene.make_current();
+  const auto memory = std::make_shared<Memory>(scene);
+  memory->stored = memory_->stored;
+  memory->overlay = memory_->overlay;
+  memory->view = memory_->view;
+  // The DAG as it was read, in the arrays of this version.
+  memory->view.dag.nodes = scene.view().paper.nodes;
+  memory->view.dag.leaf_blocks = scene.view().paper.leaf_blocks;
+  const std::uint32_t* const host = overlays.colors.words;
+  if (memory->overlay == nullptr || words > memory->overlay->size()) {
+    memory->overlay = std::make_shared<DeviceBuffer<std::uint32_t>>(
+        make_device_buffer<std::uint32_t>(2 * words, kColorMemory));
+    copy_to_device(memory->overlay->data(), host, words * sizeof(std::uint32_t));
+  } else {
+    for (const EditRun& run : changes)
+      copy_to_device(memory->overlay->data() + run.first, host + run.first,
+                     run.count * sizeof(std::uint32_t));
+  }
+  memory->view.overlays = overlays;
+  memory->view.overlays.colors.words = memory->overlay->data();
+  memory->view.overlays.normals.words = memory->overlay->data();
+  memory->view.overlays.materials.words = memory->overlay->data();
+  return DeviceAttributes(memory);
 }
 
 const ColoredDagView& DeviceAttributes::view() const { return memory_->view; }

@@ -1,9 +1,12 @@
 #pragma once
 /// Voxels in the memory of a CUDA device.
+#include <cstdint>
 #include <memory>
+#include <utility>
 
 #include "voxdag/cuda/device.hpp"
 #include "voxdag/cuda/device_voxels.hpp"
+#include "voxdag/stored/svdag/edit_changes.hpp"
 #include "voxdag/stored/svdag/voxel_set.hpp"
 
 namespace voxdag {
@@ -19,6 +22,17 @@ class DeviceScene {
   DeviceScene(const CudaDevice& device, const VoxelSet& scene)
       : DeviceScene(device, scene, default_layout(scene)) {}
 
+  /// Copies a DAG that is being edited (edit/editable_dag.hpp), in the layout kPaper: all of its
+  /// words and leaf blocks, whose numbers are given, and room for as many again as an eighth of
+  /// them.
+  DeviceScene(const CudaDevice& device, const SvdagView& dag, std::uint64_t words,
+              std::uint64_t blocks);
+  /// Returns a later version of such a scene. Copies only `changes` to the device, but everything
+  /// if the room is used up. Versions share the device's memory: an older one stays valid until
+  /// edits write over nodes that they collected. Do not call it while the device uses the scene.
+  DeviceScene updated(const SvdagView& dag, std::uint64_t words, std::uint64_t blocks,
+                      const EditChanges& changes) const;
+
   static DeviceLayout default_layout(const VoxelSet& scene) {
     return scene.esvo() != nullptr ? DeviceLayout::kContours : DeviceLayout::kPaper;
   }
@@ -30,6 +44,8 @@ class DeviceScene {
 
  private:
   struct Memory;
+  explicit DeviceScene(std::shared_ptr<const Memory> memory) : memory_(std::move(memory)) {}
+
   std::shared_ptr<const Memory> memory_;
 };
 

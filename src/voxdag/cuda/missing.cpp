@@ -20,6 +20,13 @@ constexpr const char* kReason = "this program was built without CUDA";
 CudaDevices cuda_devices() { return {{}, kReason}; }
 
 DeviceScene::DeviceScene(const CudaDevice&, const VoxelSet&, DeviceLayout) { refuse(); }
+DeviceScene::DeviceScene(const CudaDevice&, const SvdagView&, std::uint64_t, std::uint64_t) {
+  refuse();
+}
+DeviceScene DeviceScene::updated(const SvdagView&, std::uint64_t, std::uint64_t,
+                                 const EditChanges&) const {
+  refuse();
+}
 const CudaDevice& DeviceScene::device() const { refuse(); }
 const VoxelSet& DeviceScene::host() const { refuse(); }
 const DeviceVoxels& DeviceScene::view() const { refuse(); }
@@ -27,6 +34,10 @@ void DeviceScene::make_current() const { refuse(); }
 
 struct DeviceAttributes::Memory {};
 DeviceAttributes::DeviceAttributes(const DeviceScene&, const DagAttributesView&) { refuse(); }
+DeviceAttributes DeviceAttributes::updated(const DeviceScene&, const ValueOverlays&, std::uint64_t,
+                                           const std::vector<EditRun>&) const {
+  refuse();
+}
 const ColoredDagView& DeviceAttributes::view() const { refuse(); }
 
 struct DeviceBlocks::Memory {};

@@ -21,27 +21,10 @@
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/shared_number_table.hpp"
+#include "voxdag/stored/svdag/edit_changes.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
-
-/// A run of words or of leaf blocks.
-struct EditRun {
-  std::uint64_t first = 0, count = 0;
-};
-
-/// Extends the last run if it ends where the new one begins, else appends the new one.
-inline void note_run(std::vector<EditRun>& runs, std::uint64_t first, std::uint64_t count) {
-  if (!runs.empty() && runs.back().first + runs.back().count == first)
-    runs.back().count += count;
-  else
-    runs.push_back({first, count});
-}
-
-/// What was written since somebody last asked: runs, in the order of writing.
-struct EditChanges {
-  std::vector<EditRun> words, blocks;
-};
 
 class EditNodes {
  public:

@@ -28,6 +28,8 @@ class EditValues {
   ValueOverlayView view(std::uint32_t root) const { return {words_.data(), root}; }
 
   std::uint64_t bytes() const { return bytes_of(end_ - 1); }
+  /// One more than the last word that was ever written.
+  std::uint64_t words_end() const { return std::uint64_t{8} * end_; }
   std::uint64_t unused_bytes() const { return 32 * free_.size(); }
   /// Frees the places of all words that none of these roots reaches.
   void collect(std::span<const std::uint32_t> roots);
