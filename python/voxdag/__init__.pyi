@@ -100,7 +100,7 @@ class Dag:
     def export(self, path: _Path, *, window: _Window | None = None, colors: bool = True,
                faces: bool = False, slices: _Axis | None = None,
                up: Literal["y", "z"] | None = None, manifold: bool | None = None, merge: bool = False,
-               texture: bool = False) -> list[Path]: ...
+               smooth: bool = False, texture: bool = False) -> list[Path]: ...
     def render(self, *, width: int = 960, height: int = 540, eye: _Triple | None = None,
                target: _Triple | None = None, up: _Triple | None = None, fov: float | None = None,
                sun: _Triple | None = None, samples: int = 1, shadows: bool = True,

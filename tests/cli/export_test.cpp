@@ -57,7 +57,7 @@ TEST_F(ExportCommand, UnknownExtensionsAreRefusedWithThoseThatAreKnown) {
   expect_failure(
       run_voxdag({"export", path("in.vdag"), "-o", path("a.fbx")}), 1,
       "a.fbx: cannot export to '.fbx': the extension must be .spc.npy, .npy, .raw, .ply, .glb, "
-      ".obj, .stl, .vox, .binvox, .schem, .voxel.json, .nrrd, .mha, .mhd, "
+      ".obj, .stl, .3mf, .vox, .binvox, .schem, .voxel.json, .nrrd, .mha, .mhd, "
       ".vti, .nii, .nii.gz, .vdb or .nvdb, or .html; a folder ends in "
       "/");
   expect_failure(run_voxdag({"export", path("in.vdag"), "-o", path("a.stl"), "--grey"}), 2,
@@ -106,10 +106,18 @@ TEST_F(ExportCommand, OptionsOfMeshesOfFacesExcludeEachOther) {
   EXPECT_LT(size_of({"--merge"}, "m.glb"), size_of({"--manifold"}, "n.glb"));
   EXPECT_EQ(size_of({}, "w.glb"), size_of({"--watertight"}, "v.glb"));
   EXPECT_EQ(size_of({}, "m.stl"), size_of({"--manifold"}, "n.stl"));
+  EXPECT_EQ(size_of({}, "m.stl"), size_of({"--smooth"}, "s.stl"));
+  EXPECT_GT(size_of({"--smooth"}, "s.glb"), size_of({"--watertight"}, "v.glb"));
+  EXPECT_LT(size_of({"--smooth"}, "s.3mf"), size_of({"--smooth"}, "s.stl"));
+  EXPECT_GT(size_of({"--smooth"}, "s.ply"), size_of({"--faces"}, "f.ply"));
   for (const std::vector<std::string>& options :
        {std::vector<std::string>{"--merge", "-o", "a.stl"},
         {"--manifold", "-o", "a.ply"},
         {"--merge", "--manifold", "-o", "a.glb"},
+        {"--smooth", "--manifold", "-o", "a.glb"},
+        {"--smooth", "-o", "a.vox"},
+        {"--manifold", "-o", "a.3mf"},
+        {"--skip-empty", "-o", "a.stl"},
         {"--up", "x", "-o", "a.glb"},
         {"--texture", "-o", "a.stl"}}) {
     std::vector<std::string> arguments{"export", path("in.vdag")};

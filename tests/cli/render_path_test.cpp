@@ -53,6 +53,98 @@ TEST_F(RenderPath, TakesTheFlightOfAScene) {
   EXPECT_NE(result.out.find("5 frames"), std::string::npos) << result.out;
 }
 
+/// Films by programs that stand for ffmpeg.
+class FilmFiles : public RenderPath {
+ protected:
+  /// Renders a film of 5 frames with `program`, a shell script, as ffmpeg; without one, no ffmpeg
+  /// is on PATH.
+  static ProcessResult film(const std::string& name, const std::string& program,
+                            const std::vector<std::string>& more = {}) {
+    const std::string bin = path("bin");
+    std::filesystem::remove_all(bin);
+    std::filesystem::create_directory(bin);
+    if (!program.empty()) {
+      write_text(bin + "/ffmpeg", "#!/bin/sh\n" + program);
+      std::filesystem::permissions(bin + "/ffmpeg", std::filesystem::perms::owner_all);
+    }
+    write_text(path("keys.json"), kFilm);
+    std::vector<std::string> command = {"env",
+                                        "PATH=" + bin + (program.empty() ? "" : ":/usr/bin:/bin")};
+    const std::vector<std::string> voxdag =
+        voxdag_command({"render", path("in.vdag"), "--path", path("keys.json"), "-o", path(name),
+                        "--fps", "4", "--ao", "4"});
+    command.insert(command.end(), voxdag.begin(), voxdag.end());
+    command.insert(command.end(), more.begin(), more.end());
+    if (std::find(more.begin(), more.end(), "--size") == more.end())
+      command.insert(command.end(), {"--size", "48x32"});
+    return Process(command).wait();
+  }
+};
+
+/// Writes its arguments, and the frames as the film. The last argument is the film.
+constexpr const char* kRecords = R"sh(
+echo "$@" > "$(dirname "$0")/arguments"
+while [ $# -gt 1 ]; do
+  if [ "$1" = -i ]; then frames=$(dirname "$2"); fi
+  shift
+done
+cat "$frames"/frame_*.png > "$1"
+)sh";
+
+TEST_F(FilmFiles, AreMadeOfTheFrames) {
+  ASSERT_EQ(RenderPath::film(kFilm).status, 0);
+  std::string frames;
+  for (int i = 0; i < 5; ++i) frames += read_text(path("f_00" + std::to_string(i) + ".png"));
+  for (const auto& [name, codec] : {std::pair("a.mp4", "libx264"), {"b.webm", "libvpx-vp9"}}) {
+    const ProcessResult result = film(name, kRecords);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    EXPECT_NE(result.out.find("5 frames of 48 x 32 pixels"), std::string::npos) << result.out;
+    EXPECT_TRUE(read_text(path(name)) == frames);
+    EXPECT_EQ(files_like(name), 1);  // The frames are gone.
+    const std::string arguments = read_text(path("bin/arguments"));
+    EXPECT_NE(arguments.find("-framerate 4 -i /"), std::string::npos) << arguments;
+    EXPECT_NE(arguments.find(codec), std::string::npos) << arguments;
+  }
+}
+
+TEST_F(FilmFiles, AFailureKeepsTheFramesAndSaysTheCommand) {
+  for (const char* program :
+       {"", "echo one >&2; echo two words >&2; touch x.mp4; exit 3", "exit 0"}) {
+    const ProcessResult result = film("bad film.mp4", program);
+    expect_failure(result, 1, "bad film.mp4: ffmpeg");
+    const std::string kept = path("bad film.mp4.frames");
+    EXPECT_NE(result.err.find("; this makes the film: ffmpeg -loglevel error -y -framerate 4 -i '" +
+                              kept + "/frame_%06d.png' "),
+              std::string::npos)
+        << result.err;
+    EXPECT_FALSE(exists("bad film.mp4"));
+    EXPECT_EQ(files_like("bad film"), 1);
+    EXPECT_TRUE(exists("bad film.mp4.frames/frame_000004.png"));
+    EXPECT_FALSE(exists("bad film.mp4.frames/log"));
+    if (std::string_view(program).starts_with("echo")) {
+      EXPECT_NE(result.err.find("ffmpeg failed (two words)"), std::string::npos) << result.err;
+    }
+    // The command that it says makes the film.
+    film("other.mp4", kRecords);
+    const std::string line = result.err.substr(result.err.find("ffmpeg -loglevel"));
+    const ProcessResult typed = Process({"sh", "-c", "PATH=$0:$PATH; " + line, path("bin")}).wait();
+    EXPECT_EQ(typed.status, 0) << typed.err;
+    EXPECT_TRUE(exists("bad film.mp4"));
+    expect_failure(film("bad film.mp4", kRecords), 1, "bad film.mp4.frames: exists");
+    std::filesystem::remove_all(kept);
+    std::filesystem::remove(path("bad film.mp4"));
+  }
+}
+
+TEST_F(FilmFiles, AreRefusedWithWhatTheyCannotHold) {
+  expect_failure(film("a%d.mp4", kRecords), 2, "is one film, whose name has no %");
+  expect_failure(film("a.mp4", kRecords, {"--size", "47x32"}), 2, "must be even numbers");
+  expect_failure(film("a.mp4", kRecords, {"--background", "transparent"}), 1, "has no alpha");
+  expect_failure(run_voxdag({"render", path("in.vdag"), "-o", path("c.mp4")}), 2, "needs --path");
+  EXPECT_FALSE(exists("c.mp4"));
+}
+
 /// An octree of several blocks, and films of it.
 class StreamedPath : public RenderPath {
  protected:

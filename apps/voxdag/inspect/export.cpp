@@ -1,7 +1,9 @@
 /// `voxdag export`: writes the voxels in the formats of other programs, or as a page of the viewer.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -27,7 +29,7 @@ namespace {
 struct ExportArguments {
   SceneInput input;
   std::string output, look;
-  bool grey = false, watertight = false, manifold = false, merge = false;
+  bool grey = false, watertight = false, manifold = false, smooth = false, merge = false;
   ExportOptions options;
   ExportContent content;
   std::optional<int> slices;  ///< Axis.
@@ -36,11 +38,13 @@ struct ExportArguments {
 
   /// Returns the output with the extension of its format.
   std::string name() const { return content.format.empty() ? output : "out." + content.format; }
-  bool is_vdb() const { return !slices && (name().ends_with(".vdb") || name().ends_with(".nvdb")); }
-  bool is_stl() const { return !slices && name().ends_with(".stl"); }
-  bool is_merged() const {
-    return !slices && (name().ends_with(".glb") || name().ends_with(".obj"));
+  bool has_ending(std::initializer_list<const char*> endings) const {
+    return !slices && std::any_of(endings.begin(), endings.end(),
+                                  [&](const char* ending) { return name().ends_with(ending); });
   }
+  bool is_vdb() const { return has_ending({".vdb", ".nvdb"}); }
+  bool is_printed() const { return has_ending({".stl", ".3mf"}); }
+  bool is_merged() const { return has_ending({".glb", ".obj"}); }
   bool is_page() const { return !slices && is_page_output(output); }
   bool carries_colors() const {
     return slices || export_has_colors(name(), options.window.has_value());
@@ -57,10 +61,11 @@ void check_extension(const ExportArguments& arguments) {
                             std::filesystem::path(name).extension().string(), export_extensions()));
 }
 
-/// Returns the mesh of faces that the options ask for: STL files are for printing, which needs a
-/// manifold.
+/// Returns the mesh of faces that the options ask for: STL and 3MF files are for printing, which
+/// needs a manifold.
 FaceMesh face_mesh(const ExportArguments& arguments) {
-  if (arguments.manifold || (arguments.is_stl() && !arguments.watertight))
+  if (arguments.smooth) return FaceMesh::kSmooth;
+  if (arguments.manifold || (arguments.is_printed() && !arguments.watertight))
     return FaceMesh::kManifold;
   return arguments.merge ? FaceMesh::kFewest : FaceMesh::kWatertight;
 }
@@ -84,6 +89,7 @@ void export_file(ExportArguments& arguments, Session& session) {
   MemoryBudget memory = command_budget(arguments.page.memory_limit);
   arguments.options.memory = &memory;
   arguments.options.faces = face_mesh(arguments);
+  arguments.content.ply_faces |= arguments.smooth;
   std::vector<std::string> notes;
   arguments.options.notes = &notes;
   if (!arguments.grey) arguments.options.look = look_of(look ? *look : file);
@@ -106,7 +112,8 @@ void export_file(ExportArguments& arguments, Session& session) {
                        session.progress.throw_if_cancelled();
                      })}};
   if (faces > 0)
-    written.counts.emplace_back(arguments.content.ply_faces ? "faces" : "triangles", faces);
+    written.counts.emplace_back(
+        arguments.content.ply_faces && !arguments.smooth ? "faces" : "triangles", faces);
   print_warnings(notes, session);
   print_written(written, session);
 }
@@ -129,7 +136,10 @@ void add_page_options(const Command& command, ExportArguments& arguments) {
 }
 
 void add_mesh_options(const Command& command, ExportArguments& arguments) {
-  const auto has_faces = [&arguments] { return arguments.is_merged() || arguments.is_stl(); };
+  const auto has_faces = [&arguments] { return arguments.has_ending({".glb", ".obj", ".stl"}); };
+  const auto is_mesh = [&arguments] {
+    return arguments.has_ending({".glb", ".obj", ".stl", ".3mf", ".ply"});
+  };
   const auto is_merged = [&arguments] { return arguments.is_merged(); };
   constexpr const char *kNoFaces = "on an output that is neither .glb, .obj nor .stl",
                        *kNotMerged = "on an output that is neither .glb nor .obj";
@@ -143,16 +153,26 @@ void add_mesh_options(const Command& command, ExportArguments& arguments) {
       command
           .flag("--manifold", arguments.manifold,
                 "With .glb, .obj and .stl: each edge has two triangles, each corner one fan. Where "
-                "voxels only touch, corners move by 1/8 voxel (the default of .stl)")
+                "voxels only touch, corners move by 1/8 voxel (the default of .stl; .3mf files "
+                "always are manifolds)")
           .only_if(has_faces, kNoFaces)
           .not_with(watertight);
+  const Option smooth =
+      command
+          .flag("--smooth", arguments.smooth,
+                "With .glb, .obj, .stl, .3mf and .ply: a manifold without steps. Its corners lie "
+                "within a third of a voxel, along each axis, of those of the cubes")
+          .only_if(is_mesh, "on an output that is neither .glb, .obj, .stl, .3mf nor .ply")
+          .not_with(watertight)
+          .not_with(manifold);
   command
       .flag("--merge", arguments.merge,
             "With .glb and .obj: the fewest triangles; corners can lie inside edges of others, "
             "which can show as cracks")
       .only_if(is_merged, kNotMerged)
       .not_with(watertight)
-      .not_with(manifold);
+      .not_with(manifold)
+      .not_with(smooth);
   command
       .flag("--texture", arguments.options.texture,
             "With .glb and .obj: write colours as a texture, for programs that show no colours of "
@@ -168,8 +188,8 @@ void add_mesh_options(const Command& command, ExportArguments& arguments) {
           },
           "y|z",
           "The axis that points up in the output: the scene is turned about x if another one does "
-          "in FILE (default: y for .glb and .schem, z for .vox and .stl, if FILE or the format of "
-          "its source says which axis points up; others are not turned)")
+          "in FILE (default: y for .glb and .schem, z for .vox, .stl and .3mf, if FILE or the "
+          "format of its source says which axis points up; others are not turned)")
       .only_if([&arguments] { return !arguments.is_page() && !arguments.slices; },
                "on a page or slices");
 }
@@ -196,6 +216,7 @@ void add_export_command(const Command& program, Session& session) {
       "export", "Write the voxels in the formats of other programs, or as a page that shows them",
       "voxdag export scene.vdag -o scene.glb\n"
       "  voxdag export scene.vdag -o cubes.ply --faces\n"
+      "  voxdag export part.vdag -o part.3mf --smooth\n"
       "  voxdag export scene.vdag -o part.raw --window 0,0,0,512,512,512\n"
       "  voxdag export solid.vdag -o layers/ --slices z\n"
       "  voxdag export scene.vdag -o scene.html\n"
@@ -217,7 +238,7 @@ void add_export_command(const Command& program, Session& session) {
   add_scene_input(command, arguments->input, session, "The .vdag or .esvo file");
   command
       .text("-o,--output", arguments->output, "OUT",
-            "Outer faces: .glb, .obj, .stl, or .ply with --faces. Points: .ply. Voxels: .vox "
+            "Outer faces: .glb, .obj, .stl, .3mf, or .ply with --faces. Points: .ply. Voxels: .vox "
             "(MagicaVoxel), .vdb, .nvdb, .binvox, .schem (Minecraft), .voxel.json (PlayCanvas). "
             "Volumes: .nrrd, .mha, .mhd, .nii, .nii.gz, .vti. "
             "Arrays: .npy (coordinates, or dense with --window), .raw (dense), .spc.npy (kaolin). "
@@ -236,11 +257,16 @@ void add_export_command(const Command& program, Session& session) {
                                  "With .ply: write the outer faces of the voxels, not points")
                            .only_if([arguments] { return arguments->name().ends_with(".ply"); },
                                     "on an output that does not end in .ply");
+  const Option slices =
+      command
+          .parsed("--slices", arguments->slices, parse_axis, "AXIS",
+                  "Write a folder of PNG files, one for each layer along x, y or z: slice_0000.png "
+                  "and so on")
+          .not_with(faces);
   command
-      .parsed("--slices", arguments->slices, parse_axis, "AXIS",
-              "Write a folder of PNG files, one for each layer along x, y or z: slice_0000.png and "
-              "so on")
-      .not_with(faces);
+      .flag("--skip-empty", arguments->options.skip_empty,
+            "Leave out the files of layers without voxels; import puts the others to their places")
+      .needs(slices);
   const auto carries_look = [arguments] { return arguments->carries_colors(); };
   constexpr const char* kCarriesNone = "on an output that cannot hold colours";
   const Option look = add_look_option(command, arguments->look)

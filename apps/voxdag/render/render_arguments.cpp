@@ -7,6 +7,7 @@
 
 #include "cli/environment_input.hpp"
 #include "cli/output_files.hpp"
+#include "render/film_file.hpp"
 #include "voxdag/render/film/camera_file.hpp"
 #include "voxdag/render/film/frame_names.hpp"
 #include "voxdag/render/film/view_settings.hpp"
@@ -26,6 +27,20 @@ void check_frame_pattern(const OutputFile& output, bool is_film) {
     refuse("has a placeholder for the frame number, which only --path fills in");
 }
 
+/// Throws UsageError if no film can be made with these arguments.
+void check_film(const RenderArguments& arguments) {
+  const std::string& film = arguments.output;
+  const auto refuse = [](const char* option, const std::string& reason) {
+    throw UsageError(option, reason);
+  };
+  if (arguments.path.file.empty())
+    refuse("--output", fmt::format("\"{}\" is a film, which needs --path", film));
+  if (film.find('%') != film.npos)
+    refuse("--output", fmt::format("\"{}\" is one film, whose name has no %", film));
+  if (arguments.size.width % 2 != 0 || arguments.size.height % 2 != 0)
+    refuse("--size", "must be even numbers for a film");
+}
+
 std::vector<OutputFile> pictures_of(const RenderArguments& arguments) {
   std::vector<OutputFile> outputs = {{"--output", arguments.output}};
   if (!arguments.depth.empty()) outputs.push_back({"--depth", arguments.depth});
@@ -39,9 +54,14 @@ std::vector<OutputFile> pictures_of(const RenderArguments& arguments) {
 std::vector<OutputFile> check_outputs(const RenderArguments& arguments, const Session& session) {
   std::vector<OutputFile> outputs = pictures_of(arguments);
   for (const OutputFile& output : outputs) {
+    if (output.option == "--output" && is_film_path(output.path)) {
+      check_film(arguments);
+      continue;
+    }
     if (!is_picture_path(output.path))
       throw UsageError(output.option,
-                       fmt::format("\"{}\" does not end in .png or .exr", output.path));
+                       fmt::format("\"{}\" does not end in .png or .exr{}", output.path,
+                                   output.option == "--output" ? ", or .mp4 or .webm" : ""));
     check_frame_pattern(output, !arguments.path.file.empty());
   }
   if (!arguments.write_camera.empty())

@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 
 #include <numeric>
+#include <optional>
 #include <unordered_set>
 
 #include "cli/job.hpp"
 #include "cli/output_files.hpp"
 #include "cli/stopwatch.hpp"
+#include "render/film_file.hpp"
 #include "voxdag/cluster/rank_queue.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/file/report/human.hpp"
@@ -92,13 +94,23 @@ void render_film(const RenderArguments& arguments, const FilmScene& scene,
   const PathFile file = read_path_file(arguments.path.file);
   Film film{read_camera_path(file, scene, options), arguments.path.frames_per_second, options,
             all_passes(arguments)};
+  Job& job = *session.job;
+  std::optional<FilmFile> film_file;
+  if (is_film_path(arguments.output)) {
+    if (job.count() > 1)
+      throw Error(arguments.output, "",
+                  "one process makes a film: let several write frames (-o frame_%04d.png)");
+    if (options.background == Background::kTransparent)
+      throw Error(arguments.output, "", "a film has no alpha: choose another --background");
+    film_file.emplace(arguments.output, film.frames_per_second);
+    film.passes[0].path = film_file->frames();
+  }
   std::size_t frames = 0;
   try {
     frames = frame_times(film.path, film.frames_per_second).size();
   } catch (const Error& error) {
     throw Error(file.name, "", error.reason());
   }
-  Job& job = *session.job;
   if (job.is_first()) {
     // No other rank begins a frame before this one does.
     check_file_names(arguments, film.passes, frames, session);
@@ -116,6 +128,7 @@ void render_film(const RenderArguments& arguments, const FilmScene& scene,
       render_film(film, scene.render, queue, &session.progress);
   if (!job.is_first()) return;
   if (!csv.empty()) write_whole_file(csv, timings_csv(timings));
+  if (film_file) film_file->encode(session.progress);
   session.bar.clear();
   if (!session.quiet) print_summary(film, timings, watch.since_start(), job.count());
 }

@@ -302,8 +302,8 @@ void add_path_options(const Command& command, PathArguments& path, const ViewOpt
   const Option file = command.text(
       "--path", path.file, "KEYS.json",
       "Render a film along this camera path (see `voxdag scene NAME --path`); names of output "
-      "files then need a placeholder for the frame number, such as frame_%04d.png. Under mpirun or "
-      "srun, the processes share the frames");
+      "files then need a placeholder for the frame number, such as frame_%04d.png, or end in .mp4 "
+      "or .webm: then ffmpeg makes a film. Under mpirun or srun, the processes share the frames");
   view.eye.not_with(file);
   view.target.not_with(file);
   view.matrix.not_with(file);
@@ -326,7 +326,8 @@ void add_render_options(const Command& command, Session& session, RenderArgument
   add_scene_input(command, arguments.input, session, "The .vdag or .esvo file");
   command
       .text("-o,--output", arguments.output, "OUT",
-            "The picture to write: .png, or .exr for linear light")
+            "The picture to write: .png, or .exr for linear light; with --path, a film: .mp4 or "
+            ".webm")
       .required();
   command.parsed("--size", arguments.size, parse_image_size, "WxH",
                  "Width and height in pixels, 1 to 32768 each (default: 1920x1080)");
