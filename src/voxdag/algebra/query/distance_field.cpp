@@ -19,7 +19,7 @@ enum class Target { kVoxels, kEmptyPlaces };
 
 /// Four times a squared distance in voxels: a whole number.
 using Squares = CountedVector<std::uint32_t>;
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNone = kNoSquare;
 
 /// Returns four times the squared distance along an axis from the centre of a place to the cube of
 /// the place `steps` farther.
@@ -145,23 +145,30 @@ void transform_lines(Squares& squares, std::size_t length, std::size_t step, Wor
   });
 }
 
-/// Returns the distances to the targets in the box; infinity if there are none or if the squares do
-/// not fit.
-std::vector<float> distances_within(const SvdagView& dag, const Places& places, Target target,
-                                    Work work) {
-  std::vector<float> distances(places.count, HUGE_VALF);
-  if (!fits(places.size)) return distances;
+/// Returns the squares to the targets in the box, which must fit; kNone if there are none.
+Squares squares_within(const SvdagView& dag, const Places& places, Target target, Work work) {
   Squares squares(work.memory);
   squares.resize(places.count);
   mark(dag, places, target, work, squares);
   const auto store = [&](std::size_t i, std::uint32_t square) { squares[i] = square; };
   transform_lines(squares, places.row, 1, work, store);
   transform_lines(squares, static_cast<std::size_t>(places.size.y), places.row, work, store);
-  transform_lines(squares, static_cast<std::size_t>(places.size.z), places.slice, work,
-                  [&](std::size_t i, std::uint32_t square) {
-                    if (square != kNone)
-                      distances[i] = static_cast<float>(std::sqrt(static_cast<double>(square)) / 2);
-                  });
+  transform_lines(squares, static_cast<std::size_t>(places.size.z), places.slice, work, store);
+  return squares;
+}
+
+/// Returns the distances to the targets in the box; infinity if there are none or if the squares do
+/// not fit.
+std::vector<float> distances_within(const SvdagView& dag, const Places& places, Target target,
+                                    Work work) {
+  std::vector<float> distances(places.count, HUGE_VALF);
+  if (!fits(places.size)) return distances;
+  const Squares squares = squares_within(dag, places, target, work);
+  polled_for(places.count / places.row, 64, work, "distances", [&](std::size_t row) {
+    for (std::size_t i = row * places.row; i < (row + 1) * places.row; ++i)
+      if (squares[i] != kNone)
+        distances[i] = static_cast<float>(std::sqrt(static_cast<double>(squares[i])) / 2);
+  });
   return distances;
 }
 
@@ -196,6 +203,13 @@ Box3i grown(const Box3i& box, std::int32_t steps, std::int32_t grid_side) {
 }
 
 }  // namespace
+
+CountedVector<std::uint32_t> depth_squares(const SvdagView& dag, const Box3i& box, Work work) {
+  const Places places{box};
+  if (!fits(places.size))
+    throw Error("the voxels reach too far for depths: the diagonal of their box is at most 32,767");
+  return squares_within(dag, places, Target::kEmptyPlaces, work);
+}
 
 std::vector<float> distance_field(const SvdagView& dag, const Box3i& box, Work work) {
   const Places places{box};
