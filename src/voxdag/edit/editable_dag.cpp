@@ -310,7 +310,7 @@ void EditableDag::apply(const Change& change) {
       collect();
     }
   }
-  if (used_bytes() > collect_at_) collect();
+  if (drops_ > 0 && used_bytes() > collect_at_) collect();
 }
 
 void EditableDag::push(Version version) {
@@ -322,10 +322,12 @@ void EditableDag::push(Version version) {
                     {values_->view(version.colors), values_->view(version.normals),
                      values_->view(version.materials)}};
   const auto made = std::make_shared<const Version>(std::move(version));
-  if (!versions_.empty()) versions_.resize(now_ + 1);
+  const std::size_t before = versions_.size();
+  if (before > 0) versions_.resize(now_ + 1);
   versions_.push_back(made);
   if (options_.history != 0 && versions_.size() > options_.history + 1)
     versions_.erase(versions_.begin());
+  drops_ += before + 1 - versions_.size();
   now_ = versions_.size() - 1;
   alive_.push_back(made);
 }
@@ -344,6 +346,7 @@ void EditableDag::collect() {
     value_roots.insert(value_roots.end(), {version->colors, version->normals, version->materials});
     return false;
   });
+  drops_ = 0;
   nodes_->collect(roots);
   values_->collect(value_roots);
   collect_at_ = std::max(kCollectAtLeast, 2 * used_bytes());

@@ -116,7 +116,7 @@ class EditableDag {
   const EditValues& values() const { return *values_; }
 
   /// Frees the memory of nodes and values that no version and no snapshot uses, for later edits.
-  /// Edits call it when more than half of what they added may be unused, or memory runs out.
+  /// Edits call it when versions were dropped and memory has doubled since, or when it runs out.
   void collect();
   /// Returns what was written since the last call, for copies of the arrays elsewhere.
   EditChanges take_changes() { return nodes_->take_changes(); }
@@ -152,6 +152,7 @@ class EditableDag {
   std::size_t now_ = 0;
   std::vector<std::weak_ptr<const Version>> alive_;
   std::uint64_t collect_at_;
+  std::size_t drops_ = 0;  ///< Versions that were dropped since collect().
 };
 
 }  // namespace voxdag

@@ -52,7 +52,8 @@ PlacedSource::PlacedSource(const SvdagView& dag, int finest_level,
   assert(layers.size() <= kMaxLayers);
   EqualNodes equal(memory);
   for (const AttributeLayer& layer : layers) {
-    const auto& [layer_dag, attributes] = layer.colored;
+    const SvdagView& layer_dag = layer.colored.dag;
+    const DagAttributesView& attributes = layer.colored.attributes;
     const bool has_equal_cells =
         layer_dag.levels - attributes.index.finest_level == dag.levels - finest_level;
     has_runs_.push_back(has_equal_cells && !is_turned(layer) &&
@@ -73,7 +74,8 @@ PlacedSource::Cell PlacedSource::root() const {
 /// Looks the cell of the result up in a layer.
 PlacedSource::LayerCell PlacedSource::find_cell(const AttributeLayer& layer, int level,
                                                 Vec3i place) const {
-  const auto& [dag, attributes] = layer.colored;
+  const SvdagView& dag = layer.colored.dag;
+  const DagAttributesView& attributes = layer.colored.attributes;
   const int size = dag_.levels - level, layer_level = dag.levels - size;
   const std::int32_t rest = (std::int32_t{1} << size) - 1;
   if (is_turned(layer) || layer_level < 0 ||

@@ -50,13 +50,13 @@ struct LookView {
   VOXDAG_HD bool has_materials() const { return dag.attributes.has_materials(); }
 };
 
-/// Takes a cell of `level` of a grid that may have more levels than the DAG: sets both to those of
-/// the DAG's voxel around it if the level is finer than the DAG's voxels.
-VOXDAG_HD inline void clamp_to_voxels(const SvdagView& dag, Vec3i& cell, int& level) {
-  const int finer = level - dag.levels;
+/// Sets a cell and its level to those of the cell of the finest level with attributes around it, if
+/// the level is finer. The grid of the cell may have more levels than the DAG.
+VOXDAG_HD inline void clamp_to_finest(const ColoredDagView& colored, Vec3i& cell, int& level) {
+  const int finer = level - colored.attributes.index.finest_level;
   if (finer <= 0) return;
   cell = {cell.x >> finer, cell.y >> finer, cell.z >> finer};
-  level = dag.levels;
+  level -= finer;
 }
 
 /// Sets `number` to the number of a cell of `level`, or of its ancestor of the finest level with
@@ -64,7 +64,7 @@ VOXDAG_HD inline void clamp_to_voxels(const SvdagView& dag, Vec3i& cell, int& le
 /// the DAG. Returns false if the DAG has no attributes there.
 VOXDAG_HD inline bool find_number(const ColoredDagView& colored, Vec3i cell, int level,
                                   std::uint64_t& number) {
-  clamp_to_voxels(colored.dag, cell, level);
+  clamp_to_finest(colored, cell, level);
   return !colored.is_empty() &&
          find_cell_number(colored.dag, colored.attributes.index, cell, level, number);
 }
@@ -82,7 +82,7 @@ struct CellValue {
 VOXDAG_HD inline CellValue find_value(const ColoredDagView& colored,
                                       const ValueOverlayView& overlay, Vec3i cell, int level) {
   CellValue found;
-  clamp_to_voxels(colored.dag, cell, level);
+  clamp_to_finest(colored, cell, level);
   if ((cell.x | cell.y | cell.z) >> level != 0) return found;
   const std::uint32_t reference = overlay_at(overlay, cell, level);
   if (reference >= kOverlayValue) {
