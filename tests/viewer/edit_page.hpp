@@ -8,6 +8,7 @@
 #include "http_client.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/edit/edit_nodes.hpp"
+#include "voxdag/stored/svdag/for_each_voxel.hpp"
 
 namespace voxdag {
 
