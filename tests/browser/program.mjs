@@ -53,10 +53,10 @@ export function buildColored(resolution) {
 
 /**
  * Serves a scene by `voxdag view`. Returns the address and a function that ends the server.
- * @param {string} file @returns {Promise<{url: string, close: () => Promise<void>}>}
+ * @param {string} file @param {...string} options @returns {Promise<{url: string, close: () => Promise<void>}>}
  */
-export async function view(file) {
-  const server = spawn(VOXDAG, ['view', file, '--no-open', '--port', '0'], { cwd: folder });
+export async function view(file, ...options) {
+  const server = spawn(VOXDAG, ['view', file, '--no-open', '--port', '0', ...options], { cwd: folder });
   let output = '';
   server.stderr.on('data', (text) => (output += text));
   const url = await new Promise((resolve, reject) => {
