@@ -49,6 +49,9 @@ void edit(const ViewArguments& arguments, const std::filesystem::path& output, S
     edits += (edits.empty() ? "" : "; ") + std::string("in the viewer");
     Svdag voxels = version.svdag(work);
     DagAttributes attributes = version.attributes(voxels.view(), {}, work);
+    for (auto* values : {&metadata.attributes.colors, &metadata.attributes.normals})
+      if (*values) (*values)->errors.reset();
+    if (attributes.view().is_empty()) metadata.attributes = {};
     const DagModel model(std::move(voxels), std::move(attributes), std::move(metadata), work);
     model.save(path, is_compact, work);
   };

@@ -1,0 +1,173 @@
+/** Edits in the page of `voxdag view --edit`: strokes of brushes, undo, and files that are saved. */
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import path from 'node:path';
+import { it } from 'node:test';
+import { assertNoComplaints, describeInBrowsers, open } from './browser.mjs';
+import { readPng, ssim } from './pictures.mjs';
+import { buildColored, folder, serveFolder, view, voxdag } from './program.mjs';
+
+/** @typedef {import('puppeteer-core').Page} Page */
+
+const CAMERA = { eye: [0.5, 1.3, 1.6], target: [0.5, 0, 0.5], up: [0, 1, 0], fov: 40 };
+/** A page whose picture is small, and whose panels stand beside it. */
+const SIZE = { width: 1000, height: 200 };
+
+describeInBrowsers('editing', (name, browser) => {
+  /** Opens a page of a scene. @param {string} url */
+  const load = async (url) => {
+    const page = await open(browser(), `${url}#ao=0&shadows=off`, SIZE);
+    await page.waitForFunction('window.voxdag.viewer.arrival?.hasEnded');
+    await page.evaluate((camera) => /** @type {any} */ (window).voxdag.viewer.set({ lod: 0, ground: false, exposure: 1, camera }), CAMERA);
+    return page;
+  };
+  /** Opens a page that edits, with the brush on. @param {string} url */
+  const loadEditor = async (url) => {
+    const page = await load(url);
+    await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('edit'));
+    await page.waitForSelector('button[aria-keyshortcuts="T"]', { visible: true });
+    await page.keyboard.press('t');
+    await page.waitForFunction('document.querySelector("canvas.picking") !== null');
+    return page;
+  };
+  const root = (/** @type {Page} */ page) => page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.arrival.memory.version.root);
+  /** Acts, and waits for another version and its picture. @param {Page} page @param {() => Promise<unknown>} act */
+  const change = async (page, act) => {
+    const before = await root(page);
+    await act();
+    await page.waitForFunction((old) => /** @type {any} */ (window).voxdag.viewer.arrival.memory.version.root !== old, {}, before);
+    await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.whenStill());
+  };
+  /** Drags over the picture, in parts of its size. @param {Page} page @param {number[][]} way */
+  const drag = async (page, way) => {
+    const box = await page.evaluate(() => {
+      const { left, top, width, height } = /** @type {HTMLCanvasElement} */ (document.querySelector('canvas')).getBoundingClientRect();
+      return [left, top, width, height];
+    });
+    const spots = way.map(([x, y]) => [box[0] + x * box[2], box[1] + y * box[3]]);
+    await page.mouse.move(spots[0][0], spots[0][1]);
+    await page.mouse.down();
+    for (const [x, y] of spots.slice(1)) await page.mouse.move(x, y, { steps: 4 });
+    await page.mouse.up();
+  };
+  const choose = (/** @type {Page} */ page, /** @type {string} */ value) =>
+    page.evaluate((wanted) => /** @type {HTMLElement} */ (document.querySelector(`.panel input[value=${wanted}]`)).click(), value);
+  const paintWith = (/** @type {Page} */ page, /** @type {string} */ color) => page.evaluate((wanted) => {
+    const input = /** @type {HTMLInputElement} */ (document.querySelector('.panel input[type=color]'));
+    input.value = wanted;
+    input.dispatchEvent(new Event('input'));
+  }, color);
+  const press = async (/** @type {Page} */ page, /** @type {import('puppeteer-core').KeyInput[]} */ ...keys) => {
+    for (const key of keys) await page.keyboard.down(key);
+    for (const key of keys.reverse()) await page.keyboard.up(key);
+  };
+  /** Returns the picture, as PNG in base64, and the part of its pixels that are red or green. @param {Page} page */
+  const picture = (page) => page.evaluate(async () => {
+    const blob = await /** @type {any} */ (window).voxdag.viewer.capture({ width: 160, height: 100, samples: 2 });
+    const bytes = new Uint8Array(await blob.arrayBuffer()), canvas = new OffscreenCanvas(160, 100);
+    const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext('2d'));
+    context.drawImage(await createImageBitmap(blob), 0, 0);
+    const { data } = context.getImageData(0, 0, 160, 100), parts = [0, 0];
+    for (let i = 0; i < data.length; i += 4)
+      for (const a of [0, 1]) if (data[i + a] > 60 && data[i + a] > 2.5 * data[i + 1 - a] && data[i + a] > 2.5 * data[i + 2]) parts[a] += 1 / 16000;
+    return { png: btoa(String.fromCharCode(...bytes)), red: parts[0], green: parts[1] };
+  });
+  const pick = (/** @type {Page} */ page) => page.evaluate(async () => {
+    const { viewer } = /** @type {any} */ (window).voxdag, { clientWidth, clientHeight } = viewer.canvas;
+    return viewer.pick(clientWidth / 2, clientHeight / 2);
+  });
+  const hits = (/** @type {Page} */ page) => page.evaluate(() =>
+    Array.from(/** @type {Uint32Array} */ (/** @type {any} */ (window).voxdag.viewer.hits(48, 32))).map((x, i) => (i % 4 === 3 ? x & 0x1ffff : x)).join());
+  const ACROSS = [[0.35, 0.5], [0.5, 0.5], [0.65, 0.55]];
+
+  it('takes strokes back, shows colours, keeps sections and picks, and saves a file that shows the same', async () => {
+    const file = buildColored(64), server = await view(file, '--edit', '-o', path.join(folder, `edited-${name}.vdag`)), page = await loadEditor(server.url);
+    const before = await picture(page), there = await pick(page), rootBefore = await root(page);
+    await change(page, () => drag(page, ACROSS));
+    const carved = await picture(page), hole = await pick(page);
+    assert.notEqual(carved.png, before.png);
+    assert.ok(hole === null || hole.distance > there.distance, 'the ray goes through what the stroke removed');
+    await change(page, () => press(page, 'Control', 'z'));
+    assert.equal(await root(page), rootBefore);
+    assert.equal((await picture(page)).png, before.png, 'undone, the picture is the one before');
+    await change(page, () => press(page, 'Control', 'Shift', 'Z'));
+    assert.equal((await picture(page)).png, carved.png);
+    await change(page, () => press(page, 'Control', 'z'));
+
+    await choose(page, 'add');
+    await paintWith(page, '#00ff00');
+    await change(page, () => drag(page, ACROSS));
+    const grown = await picture(page);
+    assert.ok(grown.green > before.green + 0.01, `the new voxels are green: ${grown.green}`);
+    assert.ok((await pick(page)).distance < there.distance);
+    await choose(page, 'capsule');
+    await choose(page, 'paint');
+    await paintWith(page, '#ff0000');
+    const overlay = () => page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.arrival.memory.version.colors);
+    const colors = await overlay();
+    await drag(page, [[0.2, 0.7], [0.8, 0.7]]);
+    await page.waitForFunction((old) => /** @type {any} */ (window).voxdag.viewer.arrival.memory.version.colors !== old, {}, colors);
+    await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 500)));
+    await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.whenStill());
+    const painted = await picture(page);
+    assert.ok(painted.red > before.red + 0.005, `painted red: ${painted.red}`);
+
+    // The section cuts the edited scene, for the shader and for the pointer.
+    await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.set({ section: { plane: { point: [0.5, 0, 0.5], normal: [0, 0, 1] } } }));
+    const cut = await pick(page);
+    assert.ok(cut === null || cut.position[2] < 0.5 + 1e-6);
+    assert.notEqual((await picture(page)).png, painted.png);
+    await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.set({ section: { plane: null } }));
+
+    const saved = path.join(folder, `edited-${name}.vdag`), shown = await hits(page);
+    await page.evaluate(() => /** @type {HTMLElement} */ ([...document.querySelectorAll('.panel button')].find((button) => button.textContent === 'Save as')).click());
+    await page.waitForFunction('document.body.textContent.includes("Saved edited-")');
+    assert.ok(fs.existsSync(saved));
+    voxdag('verify', saved);
+    // A page that is loaded again shows the edits.
+    await page.reload();
+    await page.waitForFunction('window.voxdag?.viewer?.arrival?.memory?.version?.colors > 0');
+    await page.evaluate((camera) => /** @type {any} */ (window).voxdag.viewer.set({ lod: 0, ground: false, exposure: 1, camera }), CAMERA);
+    await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('edit'));
+    assert.equal(await hits(page), shown);
+    assertNoComplaints(page);
+    await page.close();
+    await server.close();
+    // So does the file, in a page that only shows it.
+    const plain = await view(saved), again = await load(plain.url);
+    assert.equal(await again.evaluate(() => document.querySelector('[aria-label=Edit]')), null);
+    await again.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('view'));
+    assert.equal(await hits(again), shown);
+    const [a, b] = [painted.png, (await picture(again)).png].map((png) => readPng(Buffer.from(png, 'base64')));
+    assert.ok(ssim(a, b) > 0.98, `${ssim(a, b)}`);
+    assertNoComplaints(again);
+    await again.close();
+    await plain.close();
+  });
+
+  it('refuses edits of a foreign page, even of one that knows the secret', async () => {
+    const server = await view(buildColored(64), '--edit'), token = new URL(server.url).searchParams.get('edit');
+    const site = path.join(folder, 'foreign');
+    fs.mkdirSync(site, { recursive: true });
+    fs.writeFileSync(path.join(site, 'index.html'), '<!doctype html><title>foreign</title>');
+    const other = await serveFolder(site), page = await open(browser(), other.url, { ready: '' });
+    const answers = await page.evaluate(async (target, secret) => {
+      /** @type {string[]} */
+      const answers = [];
+      /** @type {RequestInit[]} */
+      const kinds = [{ headers: { 'Voxdag-Token': secret } }, { mode: 'no-cors' }, {}];
+      for (const kind of kinds)
+        answers.push(await fetch(target, { method: 'POST', body: 'remove,ball,0,0,0,9', ...kind }).then((answer) => String(answer.status), () => 'refused'));
+      return answers;
+    }, new URL('edit/open', server.url).href, token ?? '');
+    // An answer without CORS is opaque, status 0: the server's is 403.
+    assert.deepEqual(answers, ['refused', '0', 'refused'].map((text) => (text === '0' ? answers[1] : text)));
+    assert.ok(['0', 'refused'].includes(answers[1]));
+    await page.close();
+    other.close();
+    const own = await loadEditor(server.url);
+    assert.equal(await root(own), 0);
+    await own.close();
+    await server.close();
+  });
+});
