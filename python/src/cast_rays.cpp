@@ -93,16 +93,20 @@ py::array_t<bool> occluded(const Dag& dag, const ArrayLike& origins, const Array
 }  // namespace
 
 void add_rays(DagClass& dag) {
-  dag.def(
-         "cast", &cast, py::arg("origins"), py::arg("directions"), py::kw_only(),
-         py::arg("t_min") = 0.0f, py::arg("t_max") = std::numeric_limits<float>::infinity(),
-         "Cast rays, in world units. origins, directions: (N, 3), or one row for all. Returns a "
-         "dict of arrays: t_hit (N,) float32, inf for a miss, in units of the direction; voxel (N, "
-         "3) int32, -1 for a miss; face (N,) int8, 0 to 5 for -x, +x, -y, +y, -z, +z, -1 for a "
-         "miss or a ray that starts inside; color (N, 3) uint8, sRGB, if the DAG has colours.")
+  dag.def("cast", &cast, py::arg("origins"), py::arg("directions"), py::kw_only(),
+          py::arg("t_min") = 0.0f, py::arg("t_max") = std::numeric_limits<float>::infinity(),
+          R"(Casts rays and returns what they hit first, as a dict of arrays.
+
+origins, directions: (N, 3) real numbers in world units, or one row for all rays.
+t_min, t_max: the part of the rays that counts, in lengths of the direction.
+t_hit: (N,) float32, in lengths of the direction; inf for a miss.
+voxel: (N, 3) int32; -1 for a miss.
+face: (N,) int8, 0 to 5 for -x, +x, -y, +y, -z, +z; -1 for a miss or a ray that starts inside.
+color: (N, 3) uint8, sRGB, if the DAG has colours.)")
       .def("occluded", &occluded, py::arg("origins"), py::arg("targets"),
-           "Whether voxels lie on the segments from origins to targets, (N, 3) each, or one row "
-           "for all. Returns (N,) bool.");
+           R"(Tells whether voxels lie on the segments from origins to targets. Returns (N,) bool.
+
+origins, targets: (N, 3) real numbers in world units, or one row for all segments.)");
 }
 
 }  // namespace voxdag::python

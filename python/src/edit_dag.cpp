@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <cmath>
 
 #include "arrays.hpp"
 #include "dag.hpp"
@@ -12,6 +13,7 @@
 #include "voxdag/algebra/components.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/algebra/grow.hpp"
+#include "voxdag/algebra/hollow.hpp"
 #include "voxdag/algebra/query/containing_voxel.hpp"
 #include "voxdag/algebra/reorient.hpp"
 #include "voxdag/algebra/shift.hpp"
@@ -143,6 +145,24 @@ DagPointer grown(const Dag& dag, int steps, int neighbours, bool is_dilation) {
   });
 }
 
+DagPointer hollowed(const Dag& dag, double wall, const std::vector<std::array<double, 4>>& drains) {
+  const Grid& grid = dag.grid();
+  if (!(wall >= grid.voxel_size) || !std::isfinite(wall))
+    throw py::value_error("wall must be at least the side of a voxel, " +
+                          py::cast<std::string>(py::str(py::float_(grid.voxel_size))));
+  std::vector<Drain> holes;
+  for (const auto& [x, y, z, radius] : drains) {
+    if (!is_finite(Vec3d{x, y, z}) || !(radius > 0) || !std::isfinite(radius))
+      throw py::value_error("a drain must be x, y, z and a radius above 0");
+    holes.push_back(
+        {(Vec3d{x, y, z} - grid.origin) * (1 / grid.voxel_size), radius / grid.voxel_size});
+  }
+  return run_edit([&](Work work) {
+    return reduced_dag(dag, hollow(dag.view(), wall / grid.voxel_size, holes, work), "hollow",
+                       work);
+  });
+}
+
 std::string text_of(Vec3i v) {
   return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);
 }
@@ -222,17 +242,22 @@ DagPointer large_components(const Dag& dag, std::uint64_t least, int neighbours)
 
 void add_moves(DagClass& dag) {
   dag.def("crop", &cropped, py::arg("window"),
-          "Keep the voxels in ((x0, y0, z0), (x1, y1, z1)): the first voxel, and one past the last "
-          "on each axis. The grid stays.")
+          R"(Returns the voxels in a box. The grid stays.
+
+window: ((x0, y0, z0), (x1, y1, z1)), the first voxel and one past the last on each axis.)")
       .def("shift", &shifted, py::arg("offset"), py::kw_only(), py::arg("drop_outside") = false,
-           "Move the voxels by (x, y, z) voxels. Voxels that would leave the grid are an error, or "
-           "left out.")
+           R"(Moves the voxels. The grid stays.
+
+offset: (x, y, z), in voxels.
+drop_outside: leave out voxels that would leave the grid; without it, they raise ValueError.)")
       .def(
           "mirror",
           [](const Dag& d, const std::string& axis) {
             return reoriented(d, mirrored(axis_of(axis)), "mirrored along " + axis);
           },
-          py::arg("axis"), "Mirror along 'x', 'y' or 'z' in the middle of the grid.")
+          py::arg("axis"), R"(Mirrors the voxels in the middle of the grid.
+
+axis: 'x', 'y' or 'z', which changes direction.)")
       .def(
           "rotate",
           [](const Dag& d, const std::string& axis, int turns) {
@@ -241,17 +266,23 @@ void add_moves(DagClass& dag) {
                 "rotated about " + axis + " by " + std::to_string(turns) + " quarter turns");
           },
           py::arg("axis"), py::arg("turns") = 1,
-          "Rotate about 'x', 'y' or 'z' in the middle of the grid by quarter turns: one about z "
-          "takes x to y.")
+          R"(Rotates the voxels about the middle of the grid.
+
+axis: 'x', 'y' or 'z'. turns: quarter turns; one about z takes x to y.)")
       .def("coarsen", &coarser, py::arg("resolution"),
-           "The same place in larger voxels, which are set if the cell has voxels. A voxel has the "
-           "mean colour of its voxels.")
-      .def(
-          "components", &component_table, py::kw_only(), py::arg("neighbours") = 26,
-          "The sizes of connected components, the largest first: (K, 2) uint64, a number of voxels "
-          "and how many components have it.")
+           R"(Joins voxels to larger ones, at the same place in the world.
+
+resolution: voxels per side of the new grid, a power of two. A voxel of it is set if its place has
+voxels, and gets their mean colour.)")
+      .def("components", &component_table, py::kw_only(), py::arg("neighbours") = 26,
+           R"(Counts connected components, the largest first. Returns (K, 2) uint64.
+
+A row is a number of voxels, and how many components have it.
+neighbours: 6 (voxels share a face) or 26 (a face, an edge or a corner).)")
       .def("keep_components", &large_components, py::arg("least"), py::kw_only(),
-           py::arg("neighbours") = 26, "Keep the components of at least so many voxels.");
+           py::arg("neighbours") = 26, R"(Returns the voxels of large components.
+
+least: voxels that a component must have. neighbours: as for components().)");
 }
 
 }  // namespace
@@ -264,10 +295,12 @@ void add_edits(DagClass& dag) {
         name, [=](const Dag& a, const Dag& b) { return combined(a, b, operation, text); },
         py::is_operator(), help);
   };
-  add("__or__", SetOperation::kUnion, "union with", "Voxels of either DAG.");
-  add("__and__", SetOperation::kIntersection, "intersection with", "Voxels of both DAGs.");
-  add("__sub__", SetOperation::kDifference, "minus", "Voxels of the first DAG only.");
-  add("__xor__", SetOperation::kSymmetric, "symmetric difference with", "Voxels of one DAG only.");
+  add("__or__", SetOperation::kUnion, "union with", "Returns the voxels of either DAG.");
+  add("__and__", SetOperation::kIntersection, "intersection with",
+      "Returns the voxels of both DAGs.");
+  add("__sub__", SetOperation::kDifference, "minus", "Returns the voxels of the first DAG only.");
+  add("__xor__", SetOperation::kSymmetric, "symmetric difference with",
+      "Returns the voxels of one DAG only.");
   dag.def(
          "__eq__",
          [](const Dag& a, const Dag& b) {
@@ -277,15 +310,27 @@ void add_edits(DagClass& dag) {
                   std::equal(x.nodes, x.nodes + x.node_words(), y.nodes) &&
                   std::equal(x.leaf_blocks, x.leaf_blocks + x.leaf_block_count, y.leaf_blocks);
          },
-         py::is_operator(), "Whether both have the same voxels at the same place.")
+         py::is_operator(), "Tells whether both have the same voxels at the same place.")
       .def(
           "dilate", [](const Dag& d, int steps, int n) { return grown(d, steps, n, true); },
           py::arg("steps") = 1, py::kw_only(), py::arg("neighbours") = 26,
-          "Add the voxels that are `steps` steps from voxels, to 6 or 26 neighbours.")
+          R"(Adds the voxels that are at most `steps` steps from voxels.
+
+neighbours: 6 (a step passes a face) or 26 (a face, an edge or a corner).)")
       .def(
           "erode", [](const Dag& d, int steps, int n) { return grown(d, steps, n, false); },
           py::arg("steps") = 1, py::kw_only(), py::arg("neighbours") = 26,
-          "Remove the voxels that are `steps` steps from empty places.")
+          R"(Removes the voxels that are at most `steps` steps from empty places.
+
+neighbours: as for dilate(). Places outside of the grid are empty.)")
+      .def("hollow", &hollowed, py::arg("wall"), py::arg("drains") = py::list(),
+           R"(Removes the inside of a solid, for printing.
+
+wall: in world units. A voxel stays if the distance from its centre to the cube of the nearest empty
+place is at most this; distance_field(signed=True) shows the distances.
+drains: (N, 4), x, y, z and radius of round holes, in world units, from a point on the surface to the
+nearest voxel that was removed.
+Raises ValueError if no voxel is deeper than the wall, or if a drain does not open the cavity.)")
       .def(
           "fill_cavities",
           [](const Dag& d) {
@@ -293,7 +338,7 @@ void add_edits(DagClass& dag) {
               return without_attributes(d, fill_cavities(d.view(), work), "filled");
             });
           },
-          "Fill the empty places that no way over faces connects with the sides of the grid.");
+          "Fills the empty places that no way over faces connects with the sides of the grid.");
 }
 
 }  // namespace voxdag::python

@@ -335,36 +335,54 @@ DagPointer open(const std::filesystem::path& path) {
 
 void add_makers(py::module_& module) {
   const auto none = py::none();
-  module.def("open", &open, py::arg("path"), "Open a .vdag file.");
+  module.def("open", &open, py::arg("path"),
+             R"(Opens the .vdag file at `path`. Raises OSError if it cannot be read.)");
   module.def("build", &build, py::arg("vertices"), py::arg("faces"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
              py::arg("solid") = none, py::arg("colors") = none);
   module.def("build_mesh", &build_file, py::arg("path"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
-             py::arg("solid") = none, py::arg("colors") = false, py::arg("alpha") = "cut");
+             py::arg("solid") = none, py::arg("colors") = false, py::arg("alpha") = "cut",
+             R"(Builds the DAG of the voxels that the triangles of a mesh file meet.
+
+path: .obj, .ply, .stl, .glb and others (docs/meshes.md).
+resolution, pitch, bounds, solid: as for build().
+colors: give voxels the colours and textures of the mesh.
+alpha: "cut" leaves out transparent voxels if colors, "keep" sets them.
+Raises OSError if the file cannot be read.)");
   module.def("from_points", &from_points, py::arg("points"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
              py::arg("colors") = none);
-  module.def(
-      "from_coords", &from_coords, py::arg("coords"), py::kw_only(), py::arg("resolution") = none,
-      py::arg("pitch") = none, py::arg("origin") = none, py::arg("colors") = none,
-      "The DAG of voxels (N, 3), whole numbers. resolution: voxels along the longest "
-      "side, 1 to 2^20; default: a grid that holds them. pitch: side of a voxel (default 1); "
-      "origin: lower corner of voxel (0, 0, 0), world units. colors: (N, 3), sRGB: uint8, "
-      "uint16, or real numbers from 0 to 1.");
+  module.def("from_coords", &from_coords, py::arg("coords"), py::kw_only(),
+             py::arg("resolution") = none, py::arg("pitch") = none, py::arg("origin") = none,
+             py::arg("colors") = none,
+             R"(Builds the DAG of voxels.
+
+coords: (N, 3) whole numbers.
+resolution: voxels along the longest side, 1 to 2^20; default: a grid that holds them.
+pitch: side of a voxel, in world units; default: 1.
+origin: (x, y, z), lower corner of voxel (0, 0, 0), in world units.
+colors: (N, 3), sRGB: uint8, uint16, or real numbers from 0 to 1.)");
   module.def("from_dense", &from_dense, py::arg("dense"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("origin") = none,
-             "The DAG of the voxels [x, y, z] that are True, or not 0 in whole numbers. "
-             "resolution, pitch, origin: as for from_coords().");
+             R"(Builds the DAG of the voxels of a dense array.
+
+dense: [x, y, z]; those that are True, or not 0 in whole numbers, are voxels.
+resolution, pitch, origin: as for from_coords().)");
   module.def("import_file", &import_file, py::arg("path"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("origin") = none,
              py::arg("bounds") = none, py::arg("threshold") = none, py::arg("grid") = "",
              py::arg("colors") = true,
-             "Read a file of points, voxels or a volume: .vox, .las, .ply, .nrrd, .npy and others, "
-             "as `voxdag import` does (docs/import.md). Points need resolution or pitch. "
-             "threshold: for volumes, the least value that sets a voxel. grid: the name of a grid "
-             "of a .vdb file. Raises OSError if the file cannot be read; what the file holds and "
-             "is left out becomes a warning.");
+             R"(Reads a file of points, voxels or a volume, as `voxdag import` does.
+
+path: .vox, .las, .ply, .nrrd, .npy and others (docs/import.md).
+resolution, pitch: as for from_coords(); points need one of them.
+origin: (x, y, z), lower corner of the grid; bounds: ((x0, y0, z0), (x1, y1, z1)), the box that it
+holds; both in world units.
+threshold: for volumes, the least value that sets a voxel.
+grid: the name of a grid of a .vdb file.
+colors: also read colours, if there are some.
+Raises OSError if the file cannot be read; what the file holds and is left out becomes a warning.)");
 }
 
 }  // namespace voxdag::python

@@ -24,6 +24,8 @@ py::dict info_of(const Dag& dag) {
   info["nodes"] = metadata.counts.dag_nodes();
   info["bytes"] = dag.view().bytes();
   info["source"] = metadata.source.name;
+  info["up"] = metadata.presentation.up ? std::string(1, *metadata.presentation.up) : "";
+  info["unit"] = metadata.presentation.unit;
   const DagAttributesView attributes = dag.model().attributes();
   info["has_colors"] = attributes.has_colors();
   info["has_normals"] = attributes.has_normals();
@@ -50,10 +52,16 @@ PYBIND11_MODULE(_voxdag, module) {
   using namespace voxdag::python;
   py::register_exception_translator(translate);
   DagClass dag(module, "Dag",
-               "A sparse voxel DAG with its place in the world. It does not change.");
+               R"(A set of voxels with its place in the world, as a sparse voxel DAG.
+
+A Dag does not change: edits return new ones, and threads may share it. Operators: a | b has the
+voxels of either, a & b of both, a - b of a only, a ^ b of one only; a == b compares voxels and
+place; len(a) counts the voxels.)");
   dag.def_property_readonly("info", &info_of,
                             "dict: resolution, voxel_size and origin (world units), voxels, nodes, "
-                            "bytes, source, has_colors, has_normals, has_materials.")
+                            "bytes, source, up ('x', 'y', 'z' or ''), unit ('mm', 'cm', 'm', 'in', "
+                            "'ft' or '' if it is not known), has_colors, has_normals, "
+                            "has_materials.")
       .def_property_readonly(
           "resolution", [](const Dag& d) { return d.grid().resolution(); },
           "Voxels per side of the grid.")
@@ -77,7 +85,10 @@ PYBIND11_MODULE(_voxdag, module) {
             });
           },
           py::arg("path"), py::kw_only(), py::arg("compact") = false,
-          "Write a .vdag file; compact=True takes about a quarter of the bytes.")
+          R"(Writes a .vdag file to `path`, with the bytes that `voxdag build` would write.
+
+compact: write the compact form, which takes about a quarter of the bytes. export() writes other
+formats, and pages.)")
       .def_property_readonly("_nodes",
                              [](const py::object& self) {
                                const SvdagView view = self.cast<const Dag&>().view();

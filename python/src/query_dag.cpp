@@ -9,6 +9,7 @@
 #include "voxdag/algebra/query/containing_voxel.hpp"
 #include "voxdag/algebra/query/distance_field.hpp"
 #include "voxdag/algebra/query/height_map.hpp"
+#include "voxdag/algebra/query/local_thickness.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/query/surface_area.hpp"
 #include "voxdag/algebra/query/voxel_moments.hpp"
@@ -126,6 +127,28 @@ py::array_t<float> distance_field(const Dag& dag, const std::optional<Window>& w
   return Array<float>::ensure(field);
 }
 
+py::array_t<float> thickness(const Dag& dag, const std::optional<Window>& window) {
+  const Box3i box = window_of(dag, window);
+  const Vec3<py::ssize_t> size(box.hi - box.lo);
+  py::array_t<float> result({size.x, size.y, size.z});
+  float* const data = result.mutable_data();
+  run_work([&](Work work) {
+    std::fill_n(data, size.x * size.y * size.z, 0.0f);
+    const LocalThickness field = local_thickness(dag.view(), work);
+    const Vec3<std::size_t> in_field(field.box.hi - field.box.lo);
+    for_each_voxel(dag.view(), box, [&](Vec3i voxel) {
+      const Vec3<py::ssize_t> to(voxel - box.lo);
+      const Vec3<std::size_t> from(voxel - field.box.lo);
+      const std::uint32_t square =
+          field.squares[(from.z * in_field.y + from.y) * in_field.x + from.x];
+      data[(to.x * size.y + to.y) * size.z + to.z] =
+          static_cast<float>(std::sqrt(static_cast<double>(square)) * dag.grid().voxel_size);
+    });
+    return 0;
+  });
+  return result;
+}
+
 py::tuple tuple_of(Vec3d v) { return py::make_tuple(v.x, v.y, v.z); }
 
 VoxelMoments moments(const Dag& dag) {
@@ -174,31 +197,55 @@ void add_queries(DagClass& dag) {
           },
           "The volume of the voxels, in cubes of the world unit.");
   dag.def("contains", &contains, py::arg("points"),
-          "Whether points (N, 3), in world units, lie in voxels. Returns (N,) bool.")
+          R"(Tells whether points lie in voxels. Returns (N,) bool.
+
+points: (N, 3) real numbers in world units.)")
       .def("nearest", &nearest, py::arg("points"),
-           "The voxels nearest to points (N, 3), in world units. Returns a dict of arrays: voxel "
-           "(N, 3) int32; distance (N,) float64 to the cube of the voxel, 0 in it. Without voxels: "
-           "-1 and inf.")
+           R"(Finds the voxels nearest to points. Returns a dict of arrays.
+
+points: (N, 3) real numbers in world units.
+voxel: (N, 3) int32; -1 if the DAG has no voxels.
+distance: (N,) float64 to the cube of the voxel, in world units: 0 in it, inf without voxels.)")
       .def("coords", &coords, py::arg("window") = none,
-           "The voxels, (N, 3) int32, in Morton order. window: ((x0, y0, z0), (x1, y1, z1)), the "
-           "first voxel and one past the last on each axis.")
+           R"(Returns the voxels, (N, 3) int32, in Morton order.
+
+window: ((x0, y0, z0), (x1, y1, z1)), the first voxel and one past the last on each axis; default:
+the grid.)")
       .def("colors", &colors, py::arg("voxels"),
-           "The colours of voxels (N, 3), as (N, 3) uint8, sRGB.")
+           R"(Returns the colours of voxels, (N, 3) uint8, sRGB.
+
+voxels: (N, 3) whole numbers. Raises ValueError if the DAG has no colours.)")
       .def("to_dense", &to_dense, py::arg("window") = none,
-           "A dense array of bool, [x, y, z], of the window or the whole grid.")
+           R"(Returns a dense array of bool, [x, y, z]: whether places are voxels.
+
+window: as for coords().)")
       .def("heights", &heights, py::arg("axis"), py::kw_only(), py::arg("low") = false,
-           "The coordinate of the last voxel of each column along axis 'x', 'y' or 'z', or of the "
-           "first one if low; -1 in empty columns. Returns (N, N) int32, indexed by the other two "
-           "axes in the order x, y, z.")
+           R"(Returns the last voxel of each column, (N, N) int32; -1 in empty columns.
+
+axis: 'x', 'y' or 'z', along which columns run. The result has its coordinate, and is indexed by the
+other two axes in the order x, y, z.
+low: return the first voxel of each column.)")
       .def("distance_field", &distance_field, py::arg("window") = none, py::kw_only(),
            py::arg("signed") = false,
-           "The distances, in world units, from the centres of the window's places to the nearest "
-           "voxel: 0 in voxels, inf without voxels. signed: negative in voxels, where it is the "
-           "distance to the nearest empty place. Returns float32, [x, y, z].")
+           R"(Returns the distances from places to the nearest voxel, float32, [x, y, z].
+
+They are in world units, from the centre of a place to the cube of a voxel: 0 in voxels, inf without
+voxels.
+window: as for coords().
+signed: let distances be negative in voxels, where they are those to the nearest empty place.)")
       .def(
-          "surface", &surface,
-          "dict: faces, the numbers of outer faces of voxels across x, y and z; their area and the "
-          "volume of the voxels, in world units.");
+          "thickness", &thickness, py::arg("window") = none,
+          R"(Measures the thickness at each voxel of a solid, float32, [x, y, z]; 0 in empty places.
+
+It is the diameter, in world units, of the largest ball inside that holds the centre of the voxel and
+has its own centre in that of a voxel: plates of an even number of voxels measure one voxel less.
+window: as for coords().)")
+      .def("surface", &surface,
+           R"(Measures the surface. Returns a dict.
+
+faces: the numbers of outer faces of voxels across x, y and z.
+area: of these faces, in squares of the world unit.
+volume: of the voxels, in cubes of the world unit.)");
 }
 
 }  // namespace voxdag::python

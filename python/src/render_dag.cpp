@@ -1,6 +1,5 @@
 /// Pictures: Dag.render.
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 #include <array>
 
@@ -9,7 +8,7 @@
 #include "run_work.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/image/color.hpp"
-#include "voxdag/image/png.hpp"
+#include "voxdag/image/jpeg_writer.hpp"
 
 namespace py = pybind11;
 
@@ -81,16 +80,19 @@ void add_pictures(DagClass& dag) {
       py::arg("target") = none, py::arg("up") = none, py::arg("fov") = none, py::arg("sun") = none,
       py::arg("samples") = 1, py::arg("shadows") = true, py::arg("occlusion") = 64,
       py::arg("colors") = true,
-      "A picture, (height, width, 3) uint8, sRGB. eye, target, up and sun (the direction towards "
-      "it) are in world units, fov is the vertical field of view in degrees; without them, a view "
-      "that shows the scene well. samples: rays per pixel. occlusion: rays of ambient occlusion "
-      "per pixel, 0 for none.");
-  dag.def(
-      "_write_png",
-      [](const Dag& d, const std::filesystem::path& path) {
-        write_png(path, render(d, 640, 360, {}, {}, {}, {}, {}, 4, true, 64, true));
-      },
-      py::arg("path"));
+      R"(Renders a picture. Returns (height, width, 3) uint8, sRGB.
+
+width, height: in pixels, 1 to 65536.
+eye, target: (x, y, z), where the camera is and what it looks at, in world units.
+up: (x, y, z), the direction that points up; sun: the direction towards the sun.
+fov: vertical field of view, in degrees. Default of these: a view that shows the scene well.
+samples: rays per pixel. occlusion: rays of ambient occlusion per pixel, 0 to 4096.
+shadows: of the sun. colors: those of the DAG, else grey.)");
+  dag.def("_jpeg", [](const Dag& d) {
+    constexpr int kQuality = 80;
+    return py::bytes(
+        encode_jpeg(render(d, 640, 360, {}, {}, {}, {}, {}, 4, true, 64, true), kQuality));
+  });
 }
 
 }  // namespace voxdag::python

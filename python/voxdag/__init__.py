@@ -1,15 +1,16 @@
-"""Sparse voxel DAGs: build them from meshes, points and arrays, ask them, cast rays at them.
+"""Sparse voxel DAGs: build them from meshes, points and arrays, ask them, cast rays at them, show them.
 
     import voxdag
     dag = voxdag.load("bunny.obj", resolution=1024)
     hits = dag.cast(origins, directions)
+    dag.view()
 
 Coordinates are in world units unless a name says voxel; voxel (i, j, k) is the cube from
 origin + (i, j, k) * voxel_size. Bad arguments raise ValueError, files that cannot be read or written
 OSError, both with the reason in one line.
 """
-import difflib as _difflib
-import functools as _functools
+import base64 as _base64
+import builtins as _builtins
 import os as _os
 import re as _re
 import tempfile as _tempfile
@@ -17,38 +18,19 @@ import tempfile as _tempfile
 import numpy as _numpy
 
 from ._voxdag import Dag, __version__  # noqa: F401
-from . import _voxdag
+from . import _pages, _voxdag
+from ._signatures import documented as _documented
 
 __all__ = ["Dag", "build", "build_mesh", "from_coords", "from_dense", "from_points", "import_file",
            "load", "open"]
 
 
-def _checked(function):
-    """Returns the function, which answers unknown keywords with the nearest one that it has."""
-    signature = (function.__doc__ or "").split("\n", 1)[0]  # pybind11: "f(self: Dag, steps: int = 1)"
-    known = [name for name in _re.findall(r"(\w+): ", signature) if name != "self"]
-
-    @_functools.wraps(function)
-    def call(*args, **kwargs):
-        try:
-            return function(*args, **kwargs)
-        except TypeError:
-            for name in kwargs:
-                if known and name not in known:
-                    near = _difflib.get_close_matches(name, known, 1, 0.5)
-                    hint = f": did you mean '{near[0]}'?" if near else f"; it has {', '.join(known)}"
-                    raise TypeError(f"{function.__name__}() has no argument '{name}'{hint}") from None
-            raise
-    return call
-
-
-build_mesh, from_coords, from_dense, import_file, open = map(_checked, (  # noqa: A001
+build_mesh, from_coords, from_dense, import_file, open = map(_documented, (  # noqa: A001
     _voxdag.build_mesh, _voxdag.from_coords, _voxdag.from_dense, _voxdag.import_file,
     _voxdag.open))
-for _name in ("cast", "occluded", "coords", "to_dense", "heights", "distance_field", "dilate",
-              "erode", "crop", "shift", "rotate", "components", "keep_components", "export",
-              "render", "save"):
-    setattr(Dag, _name, _checked(getattr(Dag, _name)))
+for _name, _member in list(vars(Dag).items()):
+    if callable(_member) and not _name.startswith("_"):
+        setattr(Dag, _name, _documented(getattr(Dag, _name)))
 
 #: Files that import_file() reads, and build_mesh() does not.
 _IMPORTED = (".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb", ".las", ".pcd", ".npy", ".binvox",
@@ -56,9 +38,10 @@ _IMPORTED = (".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb", ".las", ".pcd", 
 
 
 def load(path, *, resolution=None, **options):
-    """Returns the DAG of any file: opens .vdag files, imports points, voxels and volumes, builds
-    meshes.
+    """Returns the DAG of any file that voxdag reads.
 
+    path: a .vdag file, which it opens, a mesh, which it builds, or points, voxels or a volume, which it
+    imports.
     resolution: voxels along the longest side of meshes and points, by default 1024; points that
     voxdag exported, voxels and volumes have a grid in their file.
     options: those of build_mesh() and import_file(), such as pitch, or colors=True for meshes.
@@ -123,9 +106,9 @@ def build(vertices, faces=None, *, resolution=None, pitch=None, bounds=None, sol
 
 
 def from_points(points, *, resolution=None, pitch=None, bounds=None, colors=None):
-    """Builds the DAG of the voxels that hold points: (N, 3) in world units, or a point cloud of
-    Open3D.
+    """Builds the DAG of the voxels that hold points.
 
+    points: (N, 3) real numbers in world units, or a point cloud of Open3D.
     resolution, pitch, bounds: as for build(). Points outside of bounds are left out.
     colors: (N, 3), sRGB: uint8, uint16, or real numbers from 0 to 1; a voxel has the mean of its
     points, in linear light.
@@ -136,6 +119,9 @@ def from_points(points, *, resolution=None, pitch=None, bounds=None, colors=None
             colors = _numpy.asarray(cloud.colors)
     return _voxdag.from_points(points, resolution=resolution, pitch=pitch, bounds=bounds,
                                colors=colors)
+
+
+_io_open = _builtins.open
 
 
 def _file_bytes(write, name):
@@ -169,11 +155,14 @@ def _array(dag, dtype=None, copy=None):
     return dense if dtype is None else dense.astype(dtype)
 
 
-def _to_mesh(dag, window=None):
-    """Returns vertices (N, 3) float64 in world units, and faces (M, 3) int64: two triangles for each
-    outer face of the voxels, counter-clockwise from outside. Vertices are shared within blocks of
-    4³ voxels."""
-    file = _file_bytes(lambda path: dag.export(path, faces=True, colors=False, window=window),
+def _to_mesh(self, window=None):
+    """Returns the outer faces of the voxels as vertices and triangles.
+
+    vertices: (N, 3) float64 in world units; those within a block of 4³ voxels are shared.
+    triangles: (M, 3) int64, two for each face, counter-clockwise from outside.
+    window: as for coords().
+    """
+    file = _file_bytes(lambda path: self.export(path, faces=True, colors=False, window=window),
                        "faces.ply")
     head, body = file.split(b"end_header\n", 1)
     head = head.decode()
@@ -186,11 +175,50 @@ def _to_mesh(dag, window=None):
     return places, corners[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
 
 
-def _to_trimesh(dag, window=None):
-    """Returns to_mesh() as a trimesh.Trimesh."""
+def _to_trimesh(self, window=None):
+    """Returns to_mesh() as a trimesh.Trimesh.
+
+    window: as for coords().
+    """
     import trimesh
-    vertices, faces = _to_mesh(dag, window)
+    vertices, faces = _to_mesh(self, window)
     return trimesh.Trimesh(vertices, faces)
+
+
+def _page(dag, title, colors):
+    return _file_bytes(lambda path: dag.export(path, title=title, colors=colors), "page.html")
+
+
+def _show(self, *, title="", colors=True, width="100%", height=540):
+    """Returns the viewer's page of the DAG in a frame, which a notebook displays.
+
+    The notebook holds the page, so that it also works after the kernel has ended: some 800 KB, and
+    the scene. coarsen() makes large scenes smaller.
+    title: of the page. colors: show those of the DAG.
+    width, height: of the frame, in pixels, or texts such as "100%".
+    """
+    return _pages.Frame(_page(self, title, colors).decode(), width, height)
+
+
+def _view(self, *, title="", colors=True, open_browser=True):
+    """Opens the viewer's page of the DAG in the browser, and returns at once.
+
+    Returns an object with url, the address, and close(), which ends the server of the page. The page
+    is for browsers of this machine. Without a display, a UserWarning names the address.
+    title: of the page. colors: show those of the DAG.
+    open_browser: False only serves the page.
+    """
+    return _pages.View(_page(self, title, colors), open_browser)
+
+
+def _repr_html(dag):
+    """Returns a picture and the counts, some 30 KB."""
+    info = dag.info
+    picture = _base64.b64encode(dag._jpeg()).decode()
+    size = f"{info['voxel_size']:.4g} {info['unit']}".rstrip()
+    return (f'<img width="640" height="360" alt="" src="data:image/jpeg;base64,{picture}"><br>'
+            f"{info['resolution']:,}³ grid, {info['voxels']:,} voxels of {size}, "
+            f"{info['bytes']:,} bytes")
 
 
 def _repr(dag):
@@ -199,16 +227,17 @@ def _repr(dag):
             f"{info['voxel_size']:g}, {info['bytes']:,} bytes>")
 
 
-import builtins as _builtins  # noqa: E402
-
-_io_open = _builtins.open
-Dag._repr_png_ = lambda dag: _file_bytes(dag._write_png, "dag.png")
+Dag._repr_html_ = _repr_html
+Dag.show = _show
+Dag.view = _view
 Dag.__array__ = _array
 Dag.__reduce__ = _reduce
 Dag.shape = property(lambda dag: (dag.resolution,) * 3, doc="The shape of to_dense().")
 Dag.to_mesh = _to_mesh
 Dag.to_trimesh = _to_trimesh
 Dag.__repr__ = _repr
+for _name in ("show", "to_mesh", "to_trimesh", "view"):
+    getattr(Dag, _name).__name__ = _name
 Dag.nodes = property(lambda dag: dag._nodes, doc="The nodes, a read-only view: docs/format.md.")
 Dag.leaf_blocks = property(lambda dag: dag._leaf_blocks,
                            doc="The masks of 4³ voxels, a read-only view: docs/format.md.")

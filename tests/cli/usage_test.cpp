@@ -8,9 +8,9 @@ namespace voxdag::cli {
 namespace {
 
 const std::vector<std::string> kCommands = {
-    "build",  "convert",    "info",    "verify", "view",       "render", "trace",  "export",
-    "scene",  "completion", "combine", "diff",   "components", "crop",   "shift",  "mirror",
-    "rotate", "dilate",     "erode",   "fill",   "query",      "import", "coarsen"};
+    "build",  "convert",    "info",    "verify", "view",       "render", "trace",   "export",
+    "scene",  "completion", "combine", "diff",   "components", "crop",   "shift",   "mirror",
+    "rotate", "dilate",     "erode",   "fill",   "query",      "import", "coarsen", "hollow"};
 
 TEST(Usage, VersionIsOneLine) {
   const ProcessResult result = run_voxdag({"--version"});

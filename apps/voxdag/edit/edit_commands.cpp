@@ -1,72 +1,23 @@
 /// The commands that make one DAG from another: `voxdag crop`, `shift`, `mirror`, `rotate`,
-/// `dilate`, `erode` and `fill`.
+/// `dilate`, `erode` and `fill`; `hollow` has a file of its own.
 #include <fmt/core.h>
 
-#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <utility>
 
 #include "cli/commands.hpp"
-#include "cli/output_files.hpp"
 #include "cli/parse.hpp"
-#include "edit/edited_file.hpp"
+#include "edit/edit_command.hpp"
 #include "voxdag/algebra/components.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/algebra/grow.hpp"
 #include "voxdag/algebra/reorient.hpp"
 #include "voxdag/algebra/shift.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/io/process_memory.hpp"
-#include "voxdag/file/long_vdag_file.hpp"
-#include "voxdag/file/model/edited.hpp"
 
 namespace voxdag::cli {
 namespace {
-
-/// What an edit may use.
-struct EditContext {
-  const std::string& path;  ///< The input, for errors.
-  Work work;
-};
-
-/// Makes the DAG of a command. May change the grid.
-using Edit = std::function<Svdag(const SvdagView& dag, Grid& grid, const EditContext& context)>;
-
-/// Makes the plain DAG of a command from one with long pointers.
-using LongEdit = std::function<Svdag(const LongSvdagView& dag, const EditContext& context)>;
-
-/// Lets the command read FILE, apply the edit and write OUT. describe() says what was done. Without
-/// `long_edit`, files with long pointers are refused.
-void add_edit(const Command& command, Session& session, const Edit& edit,
-              const std::function<std::string()>& describe, const LongEdit& long_edit = {}) {
-  const auto arguments = std::make_shared<EditArguments>();
-  command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
-  add_edit_options(command, *arguments, session);
-  command.when_parsed([=, &session] {
-    check_distinct({{"--output", arguments->output}}, session);
-    session.work = [=, &session] {
-      check_writable(arguments->output);
-      MemoryBudget memory = command_budget(arguments->memory_limit);
-      const EditContext context{session.subject, {&memory, &session.progress}};
-      VdagContainer opened(session.subject, &memory);
-      if (long_edit && opened.kind() == VdagKind::kLong) {
-        const LongVdagFile file(std::move(opened));
-        Svdag dag = long_edit(file.view(), context);
-        write_edited(
-            *arguments,
-            edited(file.metadata(), std::move(dag), file.metadata().grid, describe(), &memory),
-            arguments->compact, memory, session);
-        return;
-      }
-      const DagModel file(std::move(opened), {&memory, &session.progress});
-      refuse_attributes(file, session.subject, *arguments);
-      Grid grid = file.grid();
-      Svdag dag = edit(file.view(), grid, context);
-      write_edited(*arguments, std::move(dag), grid, file, describe(), memory, session);
-    };
-  });
-}
 
 std::string text_of(Vec3i v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
@@ -229,6 +180,7 @@ void add_edit_commands(const Command& program, Session& session) {
   add_grow_command(program, session, true);
   add_grow_command(program, session, false);
   add_fill_command(program, session);
+  add_hollow_command(program, session);
 }
 
 }  // namespace voxdag::cli

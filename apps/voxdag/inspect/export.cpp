@@ -18,6 +18,7 @@
 #include "view/export_page.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/file/model/scene_model.hpp"
 #include "voxdag/formats/exports/count_voxels.hpp"
 #include "voxdag/formats/exports/export_scene.hpp"
@@ -36,8 +37,10 @@ struct ExportArguments {
   ShownSceneArguments page;
   PageViewArguments page_view;
 
-  /// Returns the output with the extension of its format.
-  std::string name() const { return content.format.empty() ? output : "out." + content.format; }
+  /// Returns the output with the extension of its format, in lower case.
+  std::string name() const {
+    return lower_case(content.format.empty() ? output : "out." + content.format);
+  }
   bool has_ending(std::initializer_list<const char*> endings) const {
     return !slices && std::any_of(endings.begin(), endings.end(),
                                   [&](const char* ending) { return name().ends_with(ending); });
@@ -76,7 +79,7 @@ void export_file(ExportArguments& arguments, Session& session) {
   if (!arguments.slices) {
     check_extension(arguments);
     check_writable(arguments.output);
-  } else if (can_export_to(arguments.output) || arguments.output.ends_with(".html")) {
+  } else if (can_export_to(arguments.output) || lower_case(arguments.output).ends_with(".html")) {
     throw Error(arguments.output, "", "is the name of a file, and --slices writes a folder");
   }
   const SceneModel file(session.subject, &session.progress);

@@ -15,6 +15,8 @@
 #include "cli/parse.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/usage_error.hpp"
+#include "query/thickness.hpp"
+#include "query/write_box.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/algebra/query/containing_voxel.hpp"
 #include "voxdag/algebra/query/distance_field.hpp"
@@ -30,7 +32,6 @@
 #include "voxdag/file/model/scene_model.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/file/report/human.hpp"
-#include "voxdag/formats/exports/volume_file.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag::cli {
@@ -42,6 +43,7 @@ struct QueryArguments {
   bool count = false, distances = false, is_signed = false, area = false, from_low = false;
   std::optional<int> heights;  ///< Axis.
   std::optional<Box3i> window;
+  ThicknessArguments thickness;
   std::uint64_t memory_limit = 0;
 };
 
@@ -169,16 +171,7 @@ std::string write_distances(const QueryArguments& arguments, const DagModel& fil
                                                      : distance_field(file.view(), box, work);
   for (float& distance : distances)
     distance = static_cast<float>(static_cast<double>(distance) * file.grid().voxel_size);
-  if (is_volume_name(arguments.output)) {
-    VolumeFile volume(arguments.output, arguments.output, file.grid(), box,
-                      VolumeFile::Values::kFloat32);
-    volume.write(distances.data(), distances.size() * sizeof(float));
-    volume.commit();
-  } else {
-    NpyWriter writer(arguments.output, "<f4", {size[1], size[0]}, sizeof(float), size[2]);
-    writer.write_rows(distances.data(), size[2]);
-    writer.commit();
-  }
+  write_box(arguments.output, file.grid(), box, distances);
   return fmt::format("{} x {} x {} distances", size[0], size[1], size[2]);
 }
 
@@ -246,6 +239,9 @@ void query(const QueryArguments& arguments, Session& session) {
   const DagModel file(session.subject, {&memory, &session.progress});
   if (arguments.count) return print_count(arguments, file, memory, session);
   if (arguments.area) return print_area(file, memory, session);
+  if (arguments.thickness.is_asked)
+    return answer_thickness(arguments.thickness, arguments.output, arguments.window, file, memory,
+                            session);
   const std::string done = !arguments.points.empty()     ? answer_points(arguments, file, session)
                            : !arguments.segments.empty() ? answer_segments(arguments, file, session)
                            : arguments.distances ? write_distances(arguments, file, memory, session)
@@ -257,11 +253,12 @@ void query(const QueryArguments& arguments, Session& session) {
 void check_query_arguments(const QueryArguments& arguments, Session& session) {
   const bool writes = !arguments.points.empty() || !arguments.segments.empty() ||
                       arguments.distances || arguments.heights;
-  if (!writes && !arguments.count && !arguments.area)
+  if (!writes && !arguments.count && !arguments.area && !arguments.thickness.is_asked)
     throw UsageError(
-        "one of --points, --segments, --distances, --heights, --count and --area is required");
+        "one of --points, --segments, --distances, --heights, --thickness, --count and --area is "
+        "required");
   if (writes && arguments.output.empty()) throw UsageError("--output", "is required");
-  if (!writes && !arguments.output.empty())
+  if (!writes && !arguments.output.empty() && !arguments.thickness.is_asked)
     throw UsageError("--output", "has no effect: the answer is printed");
   session.inputs = {arguments.points, arguments.segments};
   check_distinct({{"--output", arguments.output}}, session);
@@ -279,7 +276,8 @@ void add_query_command(const Command& program, Session& session) {
                   "  voxdag query scene.vdag --count --window "
                   "0,0,0,4096,4096,4096\n"
                   "  voxdag query scene.vdag --area\n"
-                  "  voxdag query part.stl --area -r 512\n\n"
+                  "  voxdag query part.stl --area -r 512\n"
+                  "  voxdag query solid.vdag --thickness --thinner 1mm -o thin.npy\n\n"
                   "Each call answers one kind of question. All answers are "
                   "exact. Distances are computed in double precision and rounded "
                   "to float32.");
@@ -305,6 +303,11 @@ void add_query_command(const Command& program, Session& session) {
   const Option heights = add(command.parsed(
       "--heights", arguments->heights, parse_axis, "AXIS",
       "For each column along x, y or z: the coordinate of its highest voxel, -1 without voxels"));
+  const Option thickness =
+      add(command.flag("--thickness", arguments->thickness.is_asked,
+                       "Measure the thickness at each voxel of a solid: the diameter of the "
+                       "largest ball inside that "
+                       "holds it. -o writes them; --window says of which places"));
   add(command.flag("--count", arguments->count, "Count the voxels, or those of --window"));
   add(command.flag(
       "--area", arguments->area,
@@ -318,13 +321,24 @@ void add_query_command(const Command& program, Session& session) {
   command.flag("--from-low", arguments->from_low, "With --heights: of its lowest voxel")
       .needs(heights);
   command
+      .parsed("--thinner", arguments->thickness.thinner, parse_length, "LENGTH",
+              "With --thickness: count the voxels that are thinner than this: 1mm, 0.1in, or a "
+              "number in the unit of the coordinates. -o writes these voxels, as an array of int32 "
+              "of shape (N, 3)")
+      .needs(thickness);
+  command
       .parsed("--window", arguments->window, parse_window, "X0,Y0,Z0,X1,Y1,Z1",
               "The first voxel, and one past the last on each axis")
-      .only_if([arguments = arguments.get()] { return arguments->distances || arguments->count; },
-               "without --distances or --count");
-  command.text("-o,--output", arguments->output, "OUT.npy",
-               "The array to write; of --distances also a volume: .nrrd, .mha, .mhd, .vti, .nii or "
-               ".nii.gz");
+      .only_if(
+          [arguments = arguments.get()] {
+            return arguments->distances || arguments->count ||
+                   (arguments->thickness.is_asked && !arguments->output.empty());
+          },
+          "without --distances, --count, or --thickness with -o");
+  command.text(
+      "-o,--output", arguments->output, "OUT.npy",
+      "The array to write; of --distances and --thickness also a volume: .nrrd, .mha, .mhd, "
+      ".vti, .nii or .nii.gz");
   add_memory_option(command, arguments->memory_limit);
   add_json_option(command, session);
   add_threads_option(command, session);

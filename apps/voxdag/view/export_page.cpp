@@ -7,6 +7,7 @@
 #include "cli/output_files.hpp"
 #include "cli/written_files.hpp"
 #include "viewer/site/export_site.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/file/report/human.hpp"
 
 namespace voxdag::cli {
@@ -14,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_single_file(const std::string& output) { return output.ends_with(".html"); }
+bool is_single_file(const std::string& output) { return lower_case(output).ends_with(".html"); }
 
 }  // namespace
 

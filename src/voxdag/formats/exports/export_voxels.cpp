@@ -5,6 +5,7 @@
 
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/exports/export_arrays.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
 #include "voxdag/formats/exports/export_ply.hpp"
@@ -103,7 +104,7 @@ constexpr ExportFormat kExportFormats[] = {{".spc.npy", dag_file<export_spc>, fa
 
 /// Returns the format of a file, or null.
 const ExportFormat* format_of(const std::filesystem::path& path, const std::string& format = {}) {
-  const std::string name = format.empty() ? path.filename().string() : "a." + format;
+  const std::string name = lower_case(format.empty() ? path.filename().string() : "a." + format);
   for (const ExportFormat& known : kExportFormats)
     if (name.size() > known.ending.size() && name.ends_with(known.ending)) return &known;
   return nullptr;

@@ -9,6 +9,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
 #include "voxdag/formats/exports/grids/gzip_file.hpp"
 
@@ -118,7 +119,7 @@ constexpr std::array<Format, 6> kFormats{{{".nrrd", nrrd_header},
 
 const Format* format_of(const std::string& name) {
   for (const Format& format : kFormats)
-    if (name.ends_with(format.ending)) return &format;
+    if (lower_case(name).ends_with(format.ending)) return &format;
   return nullptr;
 }
 

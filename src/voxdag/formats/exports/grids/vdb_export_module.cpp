@@ -19,6 +19,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/printable.hpp"
 #include "voxdag/core/srgb.hpp"
@@ -253,7 +254,7 @@ void write_grids(AtomicFile& file, bool is_nano, const std::vector<openvdb::Grid
 
 void write_in_module(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                      const Box3i& window, const ExportOptions& options) {
-  const bool is_nano = path.extension() == ".nvdb";
+  const bool is_nano = lower_case(path.extension().string()) == ".nvdb";
   // The libraries that this module loads take about 34 MB.
   const MemoryReservation libraries(options.memory, std::uint64_t{36} << 20);
   try {

@@ -1,0 +1,45 @@
+#include "edit/edit_command.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "cli/output_files.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/file/long_vdag_file.hpp"
+#include "voxdag/file/model/edited.hpp"
+
+namespace voxdag::cli {
+
+void add_edit(const Command& command, Session& session, const Edit& edit,
+              const std::function<std::string()>& describe, const LongEdit& long_edit) {
+  const auto arguments = std::make_shared<EditArguments>();
+  command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
+  add_edit_options(command, *arguments, session);
+  command.when_parsed([=, &session] {
+    check_distinct({{"--output", arguments->output}}, session);
+    session.work = [=, &session] {
+      check_writable(arguments->output);
+      MemoryBudget memory = command_budget(arguments->memory_limit);
+      const Work work{&memory, &session.progress};
+      VdagContainer opened(session.subject, &memory);
+      if (long_edit && opened.kind() == VdagKind::kLong) {
+        const LongVdagFile file(std::move(opened));
+        Svdag dag =
+            long_edit(file.view(), {session.subject, file.metadata().presentation.unit, work});
+        write_edited(
+            *arguments,
+            edited(file.metadata(), std::move(dag), file.metadata().grid, describe(), &memory),
+            arguments->compact, memory, session);
+        return;
+      }
+      const DagModel file(std::move(opened), work);
+      refuse_attributes(file, session.subject, *arguments);
+      Grid grid = file.grid();
+      Svdag dag =
+          edit(file.view(), grid, {session.subject, file.metadata().presentation.unit, work});
+      write_edited(*arguments, std::move(dag), grid, file, describe(), memory, session);
+    };
+  });
+}
+
+}  // namespace voxdag::cli

@@ -1,0 +1,31 @@
+#pragma once
+/// Commands that make one DAG from another.
+#include <functional>
+#include <string>
+
+#include "edit/edited_file.hpp"
+
+namespace voxdag::cli {
+
+/// What an edit may use.
+struct EditContext {
+  const std::string& path;  ///< The input, for errors.
+  const std::string& unit;  ///< Of the coordinates; empty: not known.
+  Work work;
+};
+
+/// Makes the DAG of a command. May change the grid.
+using Edit = std::function<Svdag(const SvdagView& dag, Grid& grid, const EditContext& context)>;
+
+/// Makes the plain DAG of a command from one with long pointers.
+using LongEdit = std::function<Svdag(const LongSvdagView& dag, const EditContext& context)>;
+
+/// Lets the command read FILE, apply the edit and write OUT. describe() says what was done. Without
+/// `long_edit`, files with long pointers are refused.
+void add_edit(const Command& command, Session& session, const Edit& edit,
+              const std::function<std::string()>& describe, const LongEdit& long_edit = {});
+
+/// Adds `voxdag hollow`.
+void add_hollow_command(const Command& program, Session& session);
+
+}  // namespace voxdag::cli
