@@ -86,7 +86,7 @@ describeInBrowsers('editing', (name, browser) => {
     context.drawImage(await createImageBitmap(blob), 0, 0);
     const { data } = context.getImageData(0, 0, 160, 100), parts = [0, 0];
     for (let i = 0; i < data.length; i += 4)
-      for (const a of [0, 1]) if (data[i + a] > 60 && data[i + a] > 2.5 * data[i + 1 - a] && data[i + a] > 2.5 * data[i + 2]) parts[a] += 1 / 16000;
+      for (const a of [0, 1]) if (data[i + a] > 60 && data[i + a] > 8 * data[i + 1 - a] && data[i + a] > 8 * data[i + 2]) parts[a] += 1 / 16000;
     return { png: btoa(String.fromCharCode(...bytes)), red: parts[0], green: parts[1] };
   });
   const pick = (/** @type {Page} */ page) => page.evaluate(async () => {
@@ -114,7 +114,7 @@ describeInBrowsers('editing', (name, browser) => {
     await choose(page, ['add'], '#00ff00');
     await change(page, () => drag(page, ACROSS));
     const grown = await picture(page);
-    assert.ok(grown.green > before.green + 0.01, `the new voxels are green: ${grown.green}`);
+    assert.ok(grown.green > before.green + 0.01, `the new voxels are green: ${before.green}, ${grown.green}`);
     assert.ok((await pick(page)).distance < there.distance);
     await choose(page, ['capsule', 'paint'], '#ff0000');
     const overlay = () => page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.arrival.memory.version.colors);
@@ -123,7 +123,7 @@ describeInBrowsers('editing', (name, browser) => {
     await page.waitForFunction((old) => /** @type {any} */ (window).voxdag.viewer.arrival.memory.version.colors !== old, {}, colors);
     await rest(page);
     const painted = await picture(page);
-    assert.ok(painted.red > before.red + 0.005, `painted red: ${painted.red}`);
+    assert.ok(painted.red > before.red + 0.005, `painted red: ${before.red}, ${painted.red}`);
 
     // The section cuts the edited scene, for the shader and for the pointer.
     await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.set({ section: { plane: { point: [0.5, 0, 0.5], normal: [0, 0, 1] } } }));
