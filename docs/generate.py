@@ -23,12 +23,12 @@ WIDTH = 125
 # Headings of `voxdag --help`, and how their pages begin. The first word of a heading names its page.
 PAGES = {
     "Build": """After reading this page you can make meshes, DAGs and ESVOs, and convert DAGs from one form to another.""",
-    "Edit": """After reading this page you can combine, move, grow, fill and clean DAGs.
+    "Edit": """After reading this page you can combine, carve, paint, move, grow, fill and clean DAGs.
 
 All of these commands read both forms of a DAG, and write that of the first input unless `--compact` or `--plain` names one.
 The result is the file that a build of these voxels would make, except for the metadata: `build.edits` of `voxdag info --json`
-tells how the voxels were made. `diff` compares voxels only. The other commands do not keep colours, normals and material ids:
-they refuse a file that has some unless `--drop-attributes` leaves them out. A command that needs more than `--memory` is
+tells how the voxels were made. `diff` compares voxels only. `edit` keeps colours, normals and material ids. The other
+commands do not: they refuse a file that has some unless `--drop-attributes` leaves them out. A command that needs more than `--memory` is
 refused and writes nothing.
 [algebra.md](../algebra.md) tells how the commands work and what they cost.""",
     "Inspect": """After reading this page you can tell what a file contains, check it, and export its voxels.""",
@@ -48,6 +48,7 @@ MORE = {
     "convert": ["compact.md", "attributes.md#coarser-grids"],
     "coarsen": ["attributes.md#coarser-grids"],
     "combine": ["algebra.md"],
+    "edit": ["editing.md"],
     "diff": ["json.md#diff"],
     "components": ["json.md#components"],
     "info": ["json.md#info"],

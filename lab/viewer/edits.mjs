@@ -11,7 +11,7 @@ import path from 'node:path';
 import { launch, open } from '../../tests/browser/browser.mjs';
 import { view } from '../../tests/browser/program.mjs';
 
-const DABS = 40, WIDTH = 320, HEIGHT = 200;
+const DABS = 24, WIDTH = 320, HEIGHT = 200;
 
 const args = process.argv.slice(2), at = args.indexOf('-o');
 const output = at < 0 ? null : args.splice(at, 2)[1];
@@ -42,7 +42,7 @@ for (const file of args) {
     });
     const words = [], frames = [];
     for (let i = 0; i < dabs; ++i) {
-      await viewer.whenStill();
+      await new Promise((resolve) => setTimeout(resolve, 300));
       const x = box.width * (0.2 + 0.6 * ((i * 0.618) % 1)), y = box.height * (0.2 + 0.6 * ((i * 0.382) % 1));
       if (!(await viewer.pick(x, y))) continue;
       const begin = performance.now(), edited = next('edited');

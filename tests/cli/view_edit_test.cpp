@@ -53,9 +53,10 @@ TEST_F(ViewEdit, SavesBesideTheFileAndTellsOfEditsThatAreLost) {
     editor.ask("undo");
     EXPECT_EQ(editor.ask("save?replace", "empty"), "empty.vdag\n");
     EXPECT_EQ(run_voxdag({"verify", dir_ / "empty.vdag"}).status, 0);
-    if (file == plain_)
+    if (file == plain_) {
       EXPECT_EQ(VdagFile(dir_ / "empty.vdag").view().node_words(),
                 VdagFile(plain_).view().node_words());
+    }
     editor.ask("redo");
     editor.program.send_signal(SIGINT);
     const ProcessResult result = editor.program.wait();

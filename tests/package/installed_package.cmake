@@ -22,6 +22,11 @@ if(NOT out MATCHES "voxel 512 0 512 at t = (0\\.99|1)")
   message(FATAL_ERROR "the example prints something else:\n${out}")
 endif()
 run(${WORK_DIR}/prefix/bin/voxdag verify ${WORK_DIR}/cube.vdag --mesh ${SOURCE_DIR}/examples/cube.obj)
+run(${WORK_DIR}/build/edit_voxels ${WORK_DIR}/cube.vdag ${WORK_DIR}/edited.vdag)
+if(NOT out MATCHES "undo gave the snapshot: yes")
+  message(FATAL_ERROR "the example prints something else:\n${out}")
+endif()
+run(${WORK_DIR}/prefix/bin/voxdag verify ${WORK_DIR}/edited.vdag)
 
 # Every public header compiles in a project that uses only the installed files.
 file(STRINGS ${SOURCE_DIR}/cmake/public_headers.txt headers REGEX "^[a-z]")

@@ -97,6 +97,7 @@ std::string EditSession::stroke(std::uint32_t writer, std::string_view lines, bo
   const std::lock_guard lock(mutex_);
   check_writer(writer);
   const std::vector<EditStep> steps = steps_of(lines, grid_);
+  if (steps.empty()) return changes();
   const std::size_t before = dag_.undo_count();
   ends_.resize(strokes_);
   if (saved_ > before) saved_ = static_cast<std::size_t>(-1);

@@ -25,7 +25,7 @@ void take_body(std::string_view length, const ServerLimits& limits, RequestHead&
   const char* const end = length.data() + length.size();
   const auto [stop, error] = std::from_chars(length.data(), end, head.body_bytes);
   if (stop == end && error == std::errc() && head.body_bytes <= limits.most_body_bytes) return;
-  head = {stop == end ? 413 : 400, true};
+  head = {stop == end && error != std::errc::invalid_argument ? 413 : 400, true};
 }
 
 }  // namespace
@@ -68,7 +68,8 @@ RequestHead check_head(std::string_view head, const ServerLimits& limits, bool t
       result.refusal = 416;
   }
   if (hosts > 1) return {400, true};
-  if (takes_bodies && is_post && lengths == 1 && !has_other_body && result.refusal == 0) {
+  if (takes_bodies && is_post && result.refusal == 0) {
+    if (lengths != 1 || has_other_body) return {400, true};
     result.may_have_body = false;
     take_body(body_length, limits, result);
   }

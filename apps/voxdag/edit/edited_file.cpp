@@ -66,13 +66,16 @@ void write_edited(const EditArguments& arguments, Svdag dag, const Grid& grid,
 }
 
 void write_edited(const EditArguments& arguments, DagModel model, bool compact,
-                  MemoryBudget& memory, Session& session) {
+                  MemoryBudget& memory, Session& session,
+                  const std::vector<std::pair<std::string, std::uint64_t>>& counts) {
   model.set_presentation(with_home(model.metadata().presentation, model.view(), model.grid()));
   model.save(arguments.output, compact, {&memory, &session.progress});
   const std::uint64_t voxels = model.metadata().counts.voxels;
   warn_if_empty(voxels, arguments.output, session);
-  print_written({{arguments.output}, {{"voxels", voxels}}, compact ? "compact form" : "plain form"},
-                session);
+  WrittenFiles written{
+      {arguments.output}, {{"voxels", voxels}}, compact ? "compact form" : "plain form"};
+  written.counts.insert(written.counts.end(), counts.begin(), counts.end());
+  print_written(written, session);
 }
 
 }  // namespace voxdag::cli

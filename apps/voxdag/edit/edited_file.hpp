@@ -1,6 +1,8 @@
 #pragma once
 /// What the commands that change the voxels of a DAG have in common.
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/session.hpp"
@@ -39,8 +41,9 @@ void refuse_attributes(const DagModel& file, const std::string& path,
 void write_edited(const EditArguments& arguments, Svdag dag, const Grid& grid,
                   const DagModel& source, const std::string& edit, MemoryBudget& memory,
                   Session& session);
-/// Writes `model` in the compact or the plain form. Prints a summary.
+/// Writes `model` in the compact or the plain form. Prints a summary with these counts.
 void write_edited(const EditArguments& arguments, DagModel model, bool compact,
-                  MemoryBudget& memory, Session& session);
+                  MemoryBudget& memory, Session& session,
+                  const std::vector<std::pair<std::string, std::uint64_t>>& counts = {});
 
 }  // namespace voxdag::cli
