@@ -17,14 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLevels = 5;
+constexpr int kSessionLevels = 5;
 
 /// A scene of random voxels, its session, and what a page and a grid of voxels say of it.
 class Session : public testing::Test {
  protected:
   Session()
-      : voxels_(random_voxels(kLevels, 2000, 7)),
-        base_(brute_svdag(kLevels, voxels_)),
+      : voxels_(random_voxels(kSessionLevels, 2000, 7)),
+        base_(brute_svdag(kSessionLevels, voxels_)),
         mirror_(base_.view()),
         session_({base_.view(), {}}, grid(), dir_ / "suggested.vdag",
                  [](const EditSnapshot& version, const fs::path& path) {
@@ -34,7 +34,7 @@ class Session : public testing::Test {
     mirror_.take(session_.open());
   }
 
-  static Grid grid() { return {kLevels, {0, 0, 0}, 1, kSubvoxels}; }
+  static Grid grid() { return {kSessionLevels, {0, 0, 0}, 1, kSubvoxels}; }
   std::string stroke(const std::string& lines, bool goes_on = false) {
     return session_.stroke(mirror_.writer, lines, goes_on);
   }
@@ -49,7 +49,7 @@ class Session : public testing::Test {
 TEST_F(Session, APageThatTakesAllUpdatesShowsTheVoxelsOfTheScene) {
   std::mt19937 random(5);
   const auto number = [&](int most) { return static_cast<int>(random() % most); };
-  std::vector<EditModel> versions = {EditModel(kLevels, voxels_)};
+  std::vector<EditModel> versions = {EditModel(kSessionLevels, voxels_)};
   std::size_t now = 0;
   for (int i = 0; i < 60; ++i) {
     if (const int action = number(5); action == 0 && now > 0) {

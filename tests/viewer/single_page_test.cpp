@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "support/error_of.hpp"
-#include "voxdag/core/io/base64.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/base64.hpp"
 
 namespace voxdag {
 namespace {

@@ -5,11 +5,11 @@
 #include <system_error>
 
 #include "viewer/gzip/gzip.hpp"
-#include "voxdag/core/io/base64.hpp"
 #include "viewer/site/scene_pieces.hpp"
 #include "viewer/site/single_page.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/io/base64.hpp"
 #include "voxdag/core/io/temporary_folder.hpp"
 
 namespace voxdag {

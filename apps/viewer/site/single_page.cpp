@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <set>
 
-#include "voxdag/core/io/base64.hpp"
 #include "viewer/site/module_imports.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/base64.hpp"
 
 namespace voxdag {
 namespace {

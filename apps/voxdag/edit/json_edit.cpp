@@ -17,47 +17,47 @@
 namespace voxdag::cli {
 namespace {
 
-using nlohmann::json;
-
 /// The members of an object. check_all_used() throws for those that nobody asked for.
 class Members {
  public:
-  explicit Members(std::string_view line) : object_(json::parse(line, nullptr, false)) {
+  explicit Members(std::string_view line) : object_(nlohmann::json::parse(line, nullptr, false)) {
     if (!object_.is_object()) throw Error("is no object of JSON");
   }
 
-  const json* find(std::string_view name) {
+  const nlohmann::json* find(std::string_view name) {
     const auto found = object_.find(name);
     if (found == object_.end()) return nullptr;
     used_.insert(std::string(name));
     return &*found;
   }
   std::string text(std::string_view name, const char* if_missing = nullptr) {
-    const json* value = find(name);
+    const nlohmann::json* value = find(name);
     if (value == nullptr && if_missing != nullptr) return if_missing;
     if (value == nullptr || !value->is_string()) fail(name, "must be a text");
     return *value;
   }
   bool flag(std::string_view name) {
-    const json* value = find(name);
+    const nlohmann::json* value = find(name);
     if (value != nullptr && !value->is_boolean()) fail(name, "must be true or false");
     return value != nullptr && *value;
   }
   /// Appends one number, or an array of `count` numbers.
   void append(std::string_view name, std::size_t count, std::vector<double>& numbers) {
-    const json* value = find(name);
-    const json list = value == nullptr ? json() : count == 1 ? json::array({*value}) : *value;
+    const nlohmann::json* value = find(name);
+    const nlohmann::json list = value == nullptr ? nlohmann::json()
+                                : count == 1     ? nlohmann::json::array({*value})
+                                                 : *value;
     bool is_right = list.is_array() && list.size() == count;
-    for (const json& number : list) is_right = is_right && number.is_number();
+    for (const nlohmann::json& number : list) is_right = is_right && number.is_number();
     if (!is_right)
       fail(name, count == 1 ? "must be a number"
                             : "must be an array of " + std::to_string(count) + " numbers");
-    for (const json& number : list) numbers.push_back(number);
+    for (const nlohmann::json& number : list) numbers.push_back(number);
   }
   EditPaint paint() {
     EditPaint paint;
     if (find("color") != nullptr) paint.color = edit_color(text("color"));
-    if (const json* material = find("material")) {
+    if (const nlohmann::json* material = find("material")) {
       if (!material->is_number_unsigned() || *material > 0xFFFFFFFFu)
         fail("material", "must be a whole number");
       paint.material = *material;
@@ -73,13 +73,13 @@ class Members {
   }
 
  private:
-  json object_;
+  nlohmann::json object_;
   std::set<std::string> used_;
 };
 
 /// Calls add(voxel) for each voxel of a file, or of an array of arrays.
 template <class Add>
-void for_each_listed(const json& voxels, const Add& add) {
+void for_each_listed(const nlohmann::json& voxels, const Add& add) {
   if (voxels.is_string()) {
     NpyReader reader(voxels.get<std::string>(), "<i4", {3}, 4);
     std::vector<std::array<std::int32_t, 3>> rows(4096);
@@ -87,9 +87,9 @@ void for_each_listed(const json& voxels, const Add& add) {
       for (std::size_t i = 0; i < count; ++i) add(Vec3i{rows[i][0], rows[i][1], rows[i][2]});
     return;
   }
-  for (const json& voxel : voxels) {
+  for (const nlohmann::json& voxel : voxels) {
     bool is_right = voxel.is_array() && voxel.size() == 3;
-    for (const json& number : voxel)
+    for (const nlohmann::json& number : voxel)
       is_right = is_right && number.is_number_integer() && std::abs(number.get<double>()) < 0x1p31;
     if (!is_right) Members::fail("voxels", "must be arrays of 3 whole numbers, or a .npy file");
     add(Vec3i{voxel[0], voxel[1], voxel[2]});
@@ -123,7 +123,7 @@ StampMode mode_in(const std::string& text) {
   Members::fail("mode", "must be \"add\", \"remove\" or \"replace\"");
 }
 
-int axis_in(const char* name, const json& value) {
+int axis_in(const char* name, const nlohmann::json& value) {
   if (value == "x") return 0;
   if (value == "y") return 1;
   if (value == "z") return 2;
@@ -138,8 +138,9 @@ void apply_stamp(Members& edit, EditableDag& dag, StampFiles& stamps) {
     request.place.at = Vec3d{at[0], at[1], at[2]};
   }
   Orientation& orientation = request.place.orientation;
-  if (const json* mirror = edit.find("mirror")) orientation = mirrored(axis_in("mirror", *mirror));
-  if (const json* turn = edit.find("turn")) {
+  if (const nlohmann::json* mirror = edit.find("mirror"))
+    orientation = mirrored(axis_in("mirror", *mirror));
+  if (const nlohmann::json* turn = edit.find("turn")) {
     if (!turn->is_array() || turn->size() != 2 || !turn->at(1).is_number_integer())
       Members::fail("turn", "must be an axis and a number of quarter turns: [\"z\", 1]");
     const auto quarters = turn->at(1).get<std::int64_t>() % 4;

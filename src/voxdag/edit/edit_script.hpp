@@ -3,7 +3,7 @@
 ///
 ///   # Comments begin with # at the start of a line.
 ///   remove,ball,X,Y,Z,R
-///   add,box,X0,Y0,Z0,X1,Y1,Z1,#rrggbb
+///   add,box,X0,Y0,Z0,X1,Y1,Z1,\#rrggbb
 ///   paint,capsule,X0,Y0,Z0,X1,Y1,Z1,R,material=3
 ///   copy,X0,Y0,Z0,X1,Y1,Z1,TX,TY,TZ
 ///   undo

@@ -59,7 +59,7 @@ EditStep make_edit_step(EditVerb verb, std::string_view shape, std::span<const d
 /// undo or to redo.
 void apply_step(EditableDag& dag, const EditStep& step);
 
-/// Returns the colour of a text "#rrggbb". Throws Error.
+/// Returns the colour of a text "\#rrggbb". Throws Error.
 Value8 edit_color(std::string_view text);
 
 }  // namespace voxdag

@@ -19,7 +19,7 @@ namespace {
 
 TEST(Export3mf, IsReadBackAsTheManifoldWithSharedVertices) {
   const TempDir dir;
-  const ExportedScene scene(6, 7000);
+  const ExportedScene scene(6, 13000);
   for (const bool smooth : {false, true}) {
     ExportOptions options;
     if (smooth) options.faces = FaceMesh::kSmooth;

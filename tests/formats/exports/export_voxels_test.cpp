@@ -42,7 +42,7 @@ TEST(Export, TheExtensionChooses) {
       error_of([&] { run("a.xyz"); }),
       (dir / "a.xyz").string() +
           ": cannot export to '.xyz': the extension must be .spc.npy, .npy, .raw, .ply, .glb, "
-          ".obj, .stl, .vox, .binvox, .schem, .voxel.json, .nrrd, .mha, .mhd, "
+          ".obj, .stl, .3mf, .vox, .binvox, .schem, .voxel.json, .nrrd, .mha, .mhd, "
           ".vti, .nii, .nii.gz, .vdb or .nvdb");
 }
 

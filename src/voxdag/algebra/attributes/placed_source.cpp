@@ -120,7 +120,7 @@ std::optional<StoredRun> PlacedSource::run(const Cell& at, const NumberedCell& c
 PlacedSource::Reader::Reader(const PlacedSource& source) : source_(source) {
   for (std::size_t i = 0; i < source.layers_.size(); ++i) {
     const ColoredDagView& colored = source.layers_[i].colored;
-    layers_.push_back({CellFinder(colored.dag, colored.attributes.index),
+    layers_.push_back({NumberFinder(colored.dag, colored.attributes.index),
                        StoredReader(source.stored(i)),
                        false,
                        {},

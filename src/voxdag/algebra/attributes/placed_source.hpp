@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "voxdag/algebra/attributes/cell_finder.hpp"
 #include "voxdag/algebra/attributes/derived_values.hpp"
 #include "voxdag/algebra/attributes/equal_nodes.hpp"
+#include "voxdag/algebra/attributes/number_finder.hpp"
 #include "voxdag/core/orientation.hpp"
 
 namespace voxdag {
@@ -52,7 +52,7 @@ class PlacedSource {
 
    private:
     struct Layer {
-      CellFinder finder;
+      NumberFinder finder;
       StoredReader stored;
       bool is_here = false;
       CellValues here, nearest;  ///< Turned.

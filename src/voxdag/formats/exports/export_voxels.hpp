@@ -20,9 +20,9 @@ struct ExportContent {
 };
 
 /// Chooses the format by content.format or the extension, in letters of either case: .npy (dense if
-/// there is a window, else coordinates), .raw, .spc.npy, .ply, .glb, .obj, .stl, .3mf, .vox, .binvox,
-/// .schem, .voxel.json, .vdb, .nvdb. Returns the files with voxels that were written: more than one
-/// only for .vox.
+/// there is a window, else coordinates), .raw, .spc.npy, .ply, .glb, .obj, .stl, .3mf, .vox,
+/// .binvox, .schem, .voxel.json, .vdb, .nvdb. Returns the files with voxels that were written: more
+/// than one only for .vox.
 std::vector<std::filesystem::path> export_voxels(const std::filesystem::path& path,
                                                  const VoxelSet& voxels, const Grid& grid,
                                                  const ExportContent& content = {},

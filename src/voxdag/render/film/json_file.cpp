@@ -34,7 +34,8 @@ Vec3d json_vector(const nlohmann::json& json, const JsonPlace& place, const std:
   return v;
 }
 
-Vec3d json_direction(const nlohmann::json& json, const JsonPlace& place, const std::string& member) {
+Vec3d json_direction(const nlohmann::json& json, const JsonPlace& place,
+                     const std::string& member) {
   const Vec3d v = json_vector(json, place, member);
   const double length2 = dot(v, v);
   if (!(length2 > 0 && length2 < HUGE_VAL))

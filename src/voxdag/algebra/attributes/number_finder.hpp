@@ -9,9 +9,9 @@ namespace voxdag {
 
 /// Finds what find_cell_number() finds, faster if voxels are near the one before: the walk from the
 /// root begins where their paths part. Each thread needs its own. Refers to the DAG's words.
-class CellFinder {
+class NumberFinder {
  public:
-  CellFinder(const SvdagView& dag, const CellIndexView& index) : dag_(dag), index_(index) {}
+  NumberFinder(const SvdagView& dag, const CellIndexView& index) : dag_(dag), index_(index) {}
 
   /// Sets `number` to that of the cell of the finest level with attributes that contains `voxel`.
   /// Returns false if the DAG has no such cell, or if the voxel is outside the grid.
