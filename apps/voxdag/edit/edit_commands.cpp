@@ -30,19 +30,29 @@ struct EditContext {
   Work work;
 };
 
-/// Makes the DAG of a command. May change the grid.
-using Edit = std::function<Svdag(const SvdagView& dag, Grid& grid, const EditContext& context)>;
+/// The grid of the result, and where it has the voxels of the input.
+struct Placing {
+  Grid grid;
+  Orientation orientation{};
+  Vec3i offset{};
+};
+
+/// Makes the DAG of a command. May change the placing.
+using Edit =
+    std::function<Svdag(const SvdagView& dag, Placing& placing, const EditContext& context)>;
 
 /// Makes the plain DAG of a command from one with long pointers.
 using LongEdit = std::function<Svdag(const LongSvdagView& dag, const EditContext& context)>;
 
 /// Lets the command read FILE, apply the edit and write OUT. describe() says what was done. Without
-/// `long_edit`, files with long pointers are refused.
+/// `long_edit`, files with long pointers are refused. `makes_voxels`: the result may have voxels
+/// that the input does not have.
 void add_edit(const Command& command, Session& session, const Edit& edit,
-              const std::function<std::string()>& describe, const LongEdit& long_edit = {}) {
+              const std::function<std::string()>& describe, const LongEdit& long_edit = {},
+              bool makes_voxels = false) {
   const auto arguments = std::make_shared<EditArguments>();
   command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
-  add_edit_options(command, *arguments, session);
+  add_edit_options(command, *arguments, session, makes_voxels);
   command.when_parsed([=, &session] {
     check_distinct({{"--output", arguments->output}}, session);
     session.work = [=, &session] {
@@ -60,10 +70,11 @@ void add_edit(const Command& command, Session& session, const Edit& edit,
         return;
       }
       const DagModel file(std::move(opened), {&memory, &session.progress});
-      refuse_attributes(file, session.subject, *arguments);
-      Grid grid = file.grid();
-      Svdag dag = edit(file.view(), grid, context);
-      write_edited(*arguments, std::move(dag), grid, file, describe(), memory, session);
+      Placing placing{file.grid()};
+      Svdag dag = edit(file.view(), placing, context);
+      const PlacedModel source{file, placing.orientation, placing.offset};
+      write_edited(*arguments, std::move(dag), placing.grid, {&source, 1}, describe(), memory,
+                   session);
     };
   });
 }
@@ -93,7 +104,7 @@ void add_crop_command(const Command& program, Session& session) {
       .required();
   add_edit(
       command, session,
-      [box](const SvdagView& dag, Grid&, const EditContext& context) {
+      [box](const SvdagView& dag, Placing&, const EditContext& context) {
         return crop(dag, *box, context.work);
       },
       [box] { return "cropped to " + text_of(box->lo) + "," + text_of(box->hi); },
@@ -121,9 +132,11 @@ void add_shift_command(const Command& program, Session& session) {
                "Leave out voxels that leave the grid; without it, that is an error");
   add_edit(
       command, session,
-      [arguments](const SvdagView& dag, Grid& grid, const EditContext& context) {
-        grid.levels = arguments->levels.value_or(grid.levels);
-        Svdag moved = shift(dag, arguments->by, grid.levels, context.work);
+      [arguments](const SvdagView& dag, Placing& placing, const EditContext& context) {
+        const int levels = arguments->levels.value_or(dag.levels);
+        placing.grid.levels = levels;
+        placing.offset = arguments->by;
+        Svdag moved = shift(dag, arguments->by, levels, context.work);
         if (arguments->drop_outside) return moved;
         const std::uint64_t lost = count_svdag(dag).voxels - count_svdag(moved.view()).voxels;
         if (lost != 0)
@@ -144,8 +157,9 @@ void add_mirror_command(const Command& program, Session& session) {
       .required();
   add_edit(
       command, session,
-      [axis](const SvdagView& dag, Grid&, const EditContext& context) {
-        return reorient(dag, mirrored(*axis), context.work);
+      [axis](const SvdagView& dag, Placing& placing, const EditContext& context) {
+        placing.orientation = mirrored(*axis);
+        return reorient(dag, placing.orientation, context.work);
       },
       [axis] { return fmt::format("mirrored along {}", "xyz"[*axis]); });
 }
@@ -165,8 +179,9 @@ void add_rotate_command(const Command& program, Session& session) {
                  "Number of quarter turns; one about z takes x to y");
   add_edit(
       command, session,
-      [arguments](const SvdagView& dag, Grid&, const EditContext& context) {
-        return reorient(dag, rotated(arguments->axis, arguments->turns), context.work);
+      [arguments](const SvdagView& dag, Placing& placing, const EditContext& context) {
+        placing.orientation = rotated(arguments->axis, arguments->turns);
+        return reorient(dag, placing.orientation, context.work);
       },
       [arguments] {
         return fmt::format("rotated about {} by {} quarter turns", "xyz"[arguments->axis],
@@ -195,14 +210,15 @@ void add_grow_command(const Command& program, Session& session, bool is_dilation
   add_neighbours_option(command, arguments->neighbours);
   add_edit(
       command, session,
-      [=](const SvdagView& dag, Grid&, const EditContext& context) {
+      [=](const SvdagView& dag, Placing&, const EditContext& context) {
         return is_dilation ? dilate(dag, arguments->steps, arguments->neighbours, context.work)
                            : erode(dag, arguments->steps, arguments->neighbours, context.work);
       },
       [=] {
         return fmt::format("{} by {} steps to {} neighbours", is_dilation ? "dilated" : "eroded",
                            arguments->steps, arguments->neighbours == Neighbours::k6 ? 6 : 26);
-      });
+      },
+      {}, is_dilation);
 }
 
 void add_fill_command(const Command& program, Session& session) {
@@ -213,10 +229,10 @@ void add_fill_command(const Command& program, Session& session) {
       "grid.");
   add_edit(
       command, session,
-      [](const SvdagView& dag, Grid&, const EditContext& context) {
+      [](const SvdagView& dag, Placing&, const EditContext& context) {
         return fill_cavities(dag, context.work);
       },
-      [] { return "filled"; });
+      [] { return "filled"; }, {}, true);
 }
 
 }  // namespace
