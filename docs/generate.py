@@ -27,8 +27,8 @@ PAGES = {
 
 All of these commands read both forms of a DAG, and write that of the first input unless `--compact` or `--plain` names one.
 The result is the file that a build of these voxels would make, except for the metadata: `build.edits` of `voxdag info --json`
-tells how the voxels were made. `diff` compares voxels only. `edit` keeps colours, normals and material ids. The other
-commands do not: they refuse a file that has some unless `--drop-attributes` leaves them out. A command that needs more than `--memory` is
+tells how the voxels were made. `diff` compares voxels only. The other commands keep colours,
+normals and material ids ([algebra.md](../algebra.md#colours-normals-and-materials)). A command that needs more than `--memory` is
 refused and writes nothing.
 [algebra.md](../algebra.md) tells how the commands work and what they cost.""",
     "Inspect": """After reading this page you can tell what a file contains, check it, and export its voxels.""",

@@ -1,10 +1,11 @@
-/// DAGs from DAGs: set operations, moves, dilation, components. Results keep the colours if each of
-/// their voxels has one, and warn of attributes that they drop.
+/// DAGs from DAGs: set operations, moves, dilation, components. Results keep colours, normals and
+/// materials; coarser DAGs keep colours only, and warn of what they drop.
 #include <pybind11/operators.h>
 #include <pybind11/stl.h>
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "arrays.hpp"
 #include "dag.hpp"
@@ -64,67 +65,36 @@ DagPointer colored_dag(VdagMetadata metadata, Work work, const Visit& visit) {
       DagModel(std::move(dag), std::move(attributes), std::move(metadata)));
 }
 
-/// Returns the model of an edit without attributes.
-DagPointer plain_dag(const Dag& source, Svdag dag, const Grid& grid, const std::string& edit) {
-  return std::make_shared<Dag>(edited(source.model(), std::move(dag), grid, edit));
+/// Returns the model of an edit; its voxels keep the attributes of `models`.
+DagPointer edited_dag(std::span<const PlacedModel> models, Svdag dag, const Grid& grid,
+                      const std::string& edit, Work work, const NewValues& new_values = {}) {
+  return std::make_shared<Dag>(edited(models, std::move(dag), grid, edit, {new_values, {}}, work));
 }
 
-/// Returns the model of an edit. source_of(voxel) is the voxel of `source` that a voxel of `dag`
-/// was: it has its colour.
-template <class SourceOf>
-Edited moved_dag(const Dag& source, Svdag dag, const std::string& edit, Work work,
-                 const SourceOf& source_of) {
-  const LookView look = source.look();
-  const DagPointer plain = plain_dag(source, std::move(dag), source.grid(), edit);
-  if (!look.has_colors()) return {plain, !look.is_empty()};
-  LookReader reader(look);
-  const int levels = source.grid().levels;
-  const DagPointer colored = colored_dag(plain->model().metadata(), work, [&](const auto& add) {
-    for_each_voxel(plain->view(), whole_grid(levels),
-                   [&](Vec3i voxel) { add(voxel, reader.read(source_of(voxel), levels).color); });
-  });
-  return {colored, look.has_normals() || look.has_materials()};
-}
-
-/// Returns the model of an edit that adds voxels, which have no colours.
-Edited without_attributes(const Dag& source, Svdag dag, const std::string& edit) {
-  return {plain_dag(source, std::move(dag), source.grid(), edit), !source.look().is_empty()};
-}
-
-/// Returns the model of an edit that only removes voxels.
-Edited reduced_dag(const Dag& source, Svdag dag, const std::string& edit, Work work) {
-  return moved_dag(source, std::move(dag), edit, work, [](Vec3i voxel) { return voxel; });
-}
-
-/// Returns the model of a combination; voxels have the colours of `a`, else of `b`.
-Edited combined_dag(const Dag& a, const Dag& b, const DagPointer& plain, bool needs_b, Work work) {
-  const LookView look_a = a.look(), look_b = b.look();
-  const bool has_normals = look_a.has_normals() || look_a.has_materials();
-  if (!look_a.has_colors() || (needs_b && !look_b.has_colors()))
-    return {plain, has_normals || look_a.has_colors() || (needs_b && !look_b.is_empty())};
-  LookReader reader_a(look_a), reader_b(look_b);
-  const Grid& grid = plain->grid();
-  const DagPointer colored = colored_dag(plain->model().metadata(), work, [&](const auto& add) {
-    for_each_voxel(plain->view(), whole_grid(grid.levels), [&](Vec3i voxel) {
-      const Vec3d centre = grid.to_world(Vec3d(voxel) + Vec3d{0.5, 0.5, 0.5});
-      const Vec3i in_a = containing_voxel(a.grid(), centre);
-      const bool is_of_a = !needs_b || svdag_contains(a.view(), in_a, a.grid().levels);
-      add(voxel, is_of_a
-                     ? reader_a.read(in_a, a.grid().levels).color
-                     : reader_b.read(containing_voxel(b.grid(), centre), b.grid().levels).color);
-    });
-  });
-  return {colored, has_normals || (needs_b && (look_b.has_normals() || look_b.has_materials()))};
+/// Returns the model of an edit in the grid of its source. Voxels have moved like PlacedModel.
+DagPointer edited_dag(const Dag& source, Svdag dag, const std::string& edit, Work work,
+                      const NewValues& new_values = {}, const Orientation& orientation = {},
+                      Vec3i offset = {}) {
+  const PlacedModel placed{source.model(), orientation, offset};
+  return edited_dag({&placed, 1}, std::move(dag), source.grid(), edit, work, new_values);
 }
 
 DagPointer combined(const Dag& a, const Dag& b, SetOperation operation, const char* name) {
-  const bool needs_b = operation == SetOperation::kUnion || operation == SetOperation::kSymmetric;
-  return run_edit([&](Work work) {
+  return run_work([&](Work work) {
     const AlignedModels aligned(a.model(), b.model(), work);
-    const DagPointer plain = plain_dag(a, aligned.result(operation), aligned.grid_of(operation),
-                                       std::string(name) + " " + b.model().metadata().source.name);
-    return combined_dag(a, b, plain, needs_b, work);
+    return edited_dag(aligned.placed(operation), aligned.result(operation),
+                      aligned.grid_of(operation),
+                      std::string(name) + " " + b.model().metadata().source.name, work);
   });
+}
+
+using GivenColor = std::optional<std::array<std::uint8_t, 3>>;
+
+NewValues new_values_of(const GivenColor& color, std::optional<std::uint16_t> material) {
+  NewValues values;
+  if (color) values.color = Value8{(*color)[0], (*color)[1], (*color)[2]};
+  values.material = material;
+  return values;
 }
 
 Neighbours neighbours_of(int count) {
@@ -133,15 +103,16 @@ Neighbours neighbours_of(int count) {
   throw py::value_error("neighbours must be 6 or 26");
 }
 
-DagPointer grown(const Dag& dag, int steps, int neighbours, bool is_dilation) {
+DagPointer grown(const Dag& dag, int steps, int neighbours, bool is_dilation,
+                 const NewValues& new_values = {}) {
   if (steps < 1) throw py::value_error("steps must be at least 1");
   const Neighbours kind = neighbours_of(neighbours);
-  return run_edit([&](Work work) {
-    if (!is_dilation)
-      return reduced_dag(dag, erode(dag.view(), steps, kind, work),
-                         "eroded by " + std::to_string(steps), work);
-    return without_attributes(dag, dilate(dag.view(), steps, kind, work),
-                              "dilated by " + std::to_string(steps));
+  return run_work([&](Work work) {
+    Svdag result =
+        is_dilation ? dilate(dag.view(), steps, kind, work) : erode(dag.view(), steps, kind, work);
+    return edited_dag(dag, std::move(result),
+                      (is_dilation ? "dilated by " : "eroded by ") + std::to_string(steps), work,
+                      new_values);
   });
 }
 
@@ -157,9 +128,8 @@ DagPointer hollowed(const Dag& dag, double wall, const std::vector<std::array<do
     holes.push_back(
         {(Vec3d{x, y, z} - grid.origin) * (1 / grid.voxel_size), radius / grid.voxel_size});
   }
-  return run_edit([&](Work work) {
-    return reduced_dag(dag, hollow(dag.view(), wall / grid.voxel_size, holes, work), "hollow",
-                       work);
+  return run_work([&](Work work) {
+    return edited_dag(dag, hollow(dag.view(), wall / grid.voxel_size, holes, work), "hollow", work);
   });
 }
 
@@ -169,32 +139,28 @@ std::string text_of(Vec3i v) {
 
 DagPointer cropped(const Dag& dag, const Window& window) {
   const Box3i box = window_of(dag, window);
-  return run_edit([&](Work work) {
-    return reduced_dag(dag, crop(dag.view(), box, work),
-                       "cropped to " + text_of(box.lo) + "," + text_of(box.hi), work);
+  return run_work([&](Work work) {
+    return edited_dag(dag, crop(dag.view(), box, work),
+                      "cropped to " + text_of(box.lo) + "," + text_of(box.hi), work);
   });
 }
 
 DagPointer shifted(const Dag& dag, const std::array<std::int32_t, 3>& offset, bool drop_outside) {
   const Vec3i by{offset[0], offset[1], offset[2]};
-  return run_edit([&](Work work) {
-    const Edited moved =
-        moved_dag(dag, shift(dag.view(), by, dag.grid().levels, work), "shifted by " + text_of(by),
-                  work, [by](Vec3i voxel) { return voxel - by; });
+  return run_work([&](Work work) {
+    Svdag moved = shift(dag.view(), by, dag.grid().levels, work);
     const std::uint64_t lost =
-        dag.model().metadata().counts.voxels - moved.dag->model().metadata().counts.voxels;
+        dag.model().metadata().counts.voxels - count_svdag(moved.view()).voxels;
     if (lost != 0 && !drop_outside)
       throw Error(std::to_string(lost) +
                   " voxels would leave the grid: drop_outside=True leaves them out");
-    return moved;
+    return edited_dag(dag, std::move(moved), "shifted by " + text_of(by), work, {}, {}, by);
   });
 }
 
 DagPointer reoriented(const Dag& dag, const Orientation& orientation, const std::string& edit) {
-  return run_edit([&](Work work) {
-    return moved_dag(dag, reorient(dag.view(), orientation, work), edit, work, [&](Vec3i voxel) {
-      return source_cell(orientation, voxel, dag.grid().levels);
-    });
+  return run_work([&](Work work) {
+    return edited_dag(dag, reorient(dag.view(), orientation, work), edit, work, {}, orientation);
   });
 }
 
@@ -234,9 +200,9 @@ py::array_t<std::uint64_t> component_table(const Dag& dag, int neighbours) {
 
 DagPointer large_components(const Dag& dag, std::uint64_t least, int neighbours) {
   const Neighbours kind = neighbours_of(neighbours);
-  return run_edit([&](Work work) {
-    return reduced_dag(dag, keep_components(dag.view(), least, kind, work),
-                       "components of at least " + std::to_string(least) + " voxels", work);
+  return run_work([&](Work work) {
+    return edited_dag(dag, keep_components(dag.view(), least, kind, work),
+                      "components of at least " + std::to_string(least) + " voxels", work);
   });
 }
 
@@ -312,11 +278,18 @@ void add_edits(DagClass& dag) {
          },
          py::is_operator(), "Tells whether both have the same voxels at the same place.")
       .def(
-          "dilate", [](const Dag& d, int steps, int n) { return grown(d, steps, n, true); },
+          "dilate",
+          [](const Dag& d, int steps, int n, const GivenColor& color,
+             std::optional<std::uint16_t> material) {
+            return grown(d, steps, n, true, new_values_of(color, material));
+          },
           py::arg("steps") = 1, py::kw_only(), py::arg("neighbours") = 26,
+          py::arg("color") = py::none(), py::arg("material") = py::none(),
           R"(Adds the voxels that are at most `steps` steps from voxels.
 
-neighbours: 6 (a step passes a face) or 26 (a face, an edge or a corner).)")
+neighbours: 6 (a step passes a face) or 26 (a face, an edge or a corner).
+color, material: of new voxels, (red, green, blue) from 0 to 255 and an id; default: those of the
+nearest voxel.)")
       .def(
           "erode", [](const Dag& d, int steps, int n) { return grown(d, steps, n, false); },
           py::arg("steps") = 1, py::kw_only(), py::arg("neighbours") = 26,
@@ -333,12 +306,16 @@ nearest voxel that was removed.
 Raises ValueError if no voxel is deeper than the wall, or if a drain does not open the cavity.)")
       .def(
           "fill_cavities",
-          [](const Dag& d) {
-            return run_edit([&](Work work) {
-              return without_attributes(d, fill_cavities(d.view(), work), "filled");
+          [](const Dag& d, const GivenColor& color, std::optional<std::uint16_t> material) {
+            return run_work([&](Work work) {
+              return edited_dag(d, fill_cavities(d.view(), work), "filled", work,
+                                new_values_of(color, material));
             });
           },
-          "Fills the empty places that no way over faces connects with the sides of the grid.");
+          py::kw_only(), py::arg("color") = py::none(), py::arg("material") = py::none(),
+          R"(Fills the empty places that no way over faces connects with the sides of the grid.
+
+color, material: as for dilate().)");
 }
 
 }  // namespace voxdag::python

@@ -31,10 +31,25 @@ def test_edits_keep_colors():
         check(dag.crop(((0, 0, 0), (16, 9, 16))) | dag.crop(((0, 5, 0), (16, 16, 16))), lambda v: v)
         coarse = dag.coarsen(4)
         assert coarse.info["has_colors"] and as_set(coarse.coords()) == as_set(coords // 4)
-    for edit in (lambda: dag.dilate(), lambda: dag.fill_cavities(),
-                 lambda: dag | voxdag.from_coords(coords, resolution=16)):
-        with pytest.warns(UserWarning, match="no colours"):
-            assert not edit().info["has_colors"]
+        check(dag | voxdag.from_coords(coords, resolution=16), lambda v: v)
+
+
+def test_new_voxels_take_the_nearest_or_a_given_color():
+    coords = np.array([[2, 2, 2], [12, 12, 12]])
+    dag = voxdag.from_coords(coords, resolution=16, colors=np.array([[255, 0, 0], [0, 0, 255]], np.uint8))
+    red, blue = dag.colors(coords)
+    grown = dag.dilate(2)
+    for voxel, color in zip(grown.coords(), grown.colors(grown.coords())):
+        np.testing.assert_array_equal(color, red if voxel[0] < 8 else blue)
+    given = dag.dilate(2, color=(1, 2, 3))
+    for voxel, color in zip(given.coords(), given.colors(given.coords())):
+        old = {(2, 2, 2): red, (12, 12, 12): blue}.get(tuple(voxel.tolist()), (1, 2, 3))
+        np.testing.assert_array_equal(color, old)
+    assert dag.fill_cavities(color=(1, 2, 3)).info["has_colors"]
+    with pytest.raises(ValueError, match="there are no materials"):
+        dag.dilate(material=1)
+    with pytest.raises(ValueError, match="needs colours"):
+        voxdag.from_coords(coords, resolution=16).dilate(color=(1, 2, 3))
 
 
 def test_operators_align_grids():

@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "sponge.hpp"
+#include "voxdag/algebra/attributes/cell_finder.hpp"
+#include "voxdag/algebra/attributes/stored_reader.hpp"
+#include "voxdag/file/model/dag_model.hpp"
+#include "voxdag/stored/svdag/for_each_voxel.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -251,17 +256,85 @@ TEST_F(Edit, FilesNameTheProgramWithoutItsCommit) {
         << file;
 }
 
-TEST_F(Edit, AttributesAreNotLostSilently) {
-  ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "32", "--bounds", "0,0,0,0.6,0.6,0.6",
-                        "--color", "-o", path("col.vdag")})
-                .status,
-            0);
-  expect_failure(run_voxdag({"dilate", path("col.vdag"), "-o", path("none.vdag")}), 1,
-                 "--drop-attributes leaves them out");
-  EXPECT_EQ(files_like("none"), 0);
+/// The edits of files with colours, normals and material ids.
+class ColoredEdit : public Edit {
+ protected:
+  static void SetUpTestSuite() {
+    Edit::SetUpTestSuite();
+    ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "32", "--bounds", "0,0,0,0.6,0.6,0.6",
+                          "--color", "--normal", "--ids", "file", "-o", path("col.vdag")})
+                  .status,
+              0);
+  }
+
+  using Values = std::map<Voxel, CellValues>;
+
+  static Values values_of(const std::string& file) {
+    const DagModel model(path(file));
+    CellFinder finder(model.view(), model.attributes().index);
+    StoredReader reader({model.attributes(), {}});
+    Values values;
+    for_each_voxel(model.view(), whole_grid(model.grid().levels), [&](Vec3i v) {
+      std::uint64_t number = 0;
+      EXPECT_TRUE(finder.find(v, number));
+      values[{v.x, v.y, v.z}] = reader.values(number);
+    });
+    return values;
+  }
+};
+
+TEST_F(ColoredEdit, MovedAndCroppedFilesHaveTheValuesOfTheOriginal) {
+  const Values all = values_of("col.vdag");
+  ASSERT_GT(all.size(), 1000u);
+  run({"shift", path("col.vdag"), "--by", "5,3,-1", "--levels", "6", "--drop-outside"},
+      "moved.vdag");
+  run({"crop", path("moved.vdag"), "--window", "5,3,0,25,27,14"}, "part.vdag");
+  Values expected;
+  for (const auto& [v, values] : all)
+    if (v[0] < 20 && v[1] < 24 && v[2] >= 1 && v[2] < 15)
+      expected[{v[0] + 5, v[1] + 3, v[2] - 1}] = values;
+  EXPECT_TRUE(values_of("part.vdag") == expected);
+}
+
+TEST_F(ColoredEdit, AttributesAreDroppedOnlyOnRequest) {
+  run({"dilate", path("col.vdag")}, "grown.vdag");
+  EXPECT_FALSE(DagModel(path("grown.vdag")).attributes().is_empty());
   run({"dilate", path("col.vdag"), "--drop-attributes"}, "grey.vdag");
-  run({"dilate", path("a.vdag")}, "grown.vdag");
+  EXPECT_TRUE(DagModel(path("grey.vdag")).attributes().is_empty());
   EXPECT_EQ(voxels_of("grey.vdag"), voxels_of("grown.vdag"));
+}
+
+TEST_F(ColoredEdit, NewVoxelsTakeTheGivenValues) {
+  const Values old = values_of("col.vdag");
+  run({"dilate", path("col.vdag"), "--color", "1,20,200", "--material", "0"}, "given.vdag");
+  std::size_t count = 0;
+  for (const auto& [v, values] : values_of("given.vdag")) {
+    const auto before = old.find(v);
+    const Value8 expected = before == old.end() ? Value8{1, 20, 200} : before->second.color;
+    ASSERT_EQ(values.color, expected);
+    if (before == old.end()) ++count;
+  }
+  EXPECT_GT(count, 100u);
+  expect_failure(run_voxdag({"fill", path("col.vdag"), "--material", "1", "-o", path("none.vdag")}),
+                 1, "new voxels cannot have material 1");
+  expect_failure(run_voxdag({"fill", path("a.vdag"), "--color", "1,2,3", "-o", path("none.vdag")}),
+                 1, "a colour of new voxels needs colours");
+  expect_failure(run_voxdag({"fill", path("col.vdag"), "--color", "1,2,3", "--drop-attributes",
+                             "-o", path("none.vdag")}),
+                 2, "no effect");
+  EXPECT_EQ(files_like("none"), 0);
+}
+
+TEST_F(ColoredEdit, CombineSaysWhichFileHasNoValues) {
+  const ProcessResult result =
+      run_voxdag({"combine", path("b.vdag"), path("col.vdag"), "--union", "-o", path("both.vdag")});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(
+      result.err.find("b.vdag has no colours, normals, material ids: its voxels count as new"),
+      std::string::npos)
+      << result.err;
+  const Values old = values_of("col.vdag"), all = values_of("both.vdag");
+  for (const auto& [v, values] : old) ASSERT_EQ(all.at(v), values);
 }
 
 TEST_F(Edit, AMemoryLimitIsKeptOrRefused) {

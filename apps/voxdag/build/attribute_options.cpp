@@ -23,17 +23,6 @@ bool parse_cut(const std::string& text) {
   return text == "cut";
 }
 
-Value8 parse_color(const std::string& text) {
-  const Vec3d channels = parse_vec3(text);
-  Value8 color{};
-  for (int c = 0; c < 3; ++c) {
-    color[c] = static_cast<std::uint8_t>(std::clamp(channels[c], 0.0, 255.0));
-    if (color[c] != channels[c])
-      throw std::invalid_argument("must be three whole numbers from 0 to 255");
-  }
-  return color;
-}
-
 IdKind parse_ids(const std::string& text) {
   if (text == "material") return IdKind::kMaterial;
   if (text == "object") return IdKind::kObject;

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -101,6 +102,17 @@ Vec3d parse_direction(const std::string& text) {
   if (!(dot(direction, direction) > 0))
     throw std::invalid_argument(fmt::format("\"{}\" is not a direction: its length is zero", text));
   return direction;
+}
+
+Vec3<std::uint8_t> parse_color(const std::string& text) {
+  const Vec3d channels = parse_vec3(text);
+  Vec3<std::uint8_t> color{};
+  for (int c = 0; c < 3; ++c) {
+    color[c] = static_cast<std::uint8_t>(std::clamp(channels[c], 0.0, 255.0));
+    if (color[c] != channels[c])
+      throw std::invalid_argument("must be three whole numbers from 0 to 255");
+  }
+  return color;
 }
 
 Box3d parse_box(const std::string& text) { return parse_box_of<double>(text); }

@@ -26,6 +26,8 @@ std::vector<double> parse_numbers(const std::string& text);
 Vec3d parse_vec3(const std::string& text);
 /// Parses three numbers, not all zero.
 Vec3d parse_direction(const std::string& text);
+/// Parses red, green and blue, whole numbers from 0 to 255.
+Vec3<std::uint8_t> parse_color(const std::string& text);
 /// Parses the lower and the upper corner of a box: "x0,y0,z0,x1,y1,z1".
 Box3d parse_box(const std::string& text);
 /// Parses a box of voxels, in whole numbers: the first voxel, and one past the last on each axis.

@@ -52,11 +52,8 @@ std::optional<Vec3i> equal_when_shifted(const SvdagView& a, const SvdagView& b, 
 /// Two files in one grid.
 class AlignedFiles {
  public:
-  AlignedFiles(const std::string& first, const std::string& second, const EditArguments& arguments,
-               Work work)
+  AlignedFiles(const std::string& first, const std::string& second, Work work)
       : first_(first, work), second_(second, work) {
-    refuse_attributes(first_, first, arguments);
-    refuse_attributes(second_, second, arguments);
     with_file_name(second, [&] {
       try {
         models_.emplace(first_, second_, work);
@@ -125,14 +122,37 @@ std::string edit_text(SetOperation operation, const std::string& second) {
   }
 }
 
+/// Says which kinds of values only one of two files has.
+void warn_of_missing(const std::vector<PlacedModel>& files, const std::vector<std::string>& paths,
+                     Session& session) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const ValueKinds own = kinds_of(files[i].model.attributes());
+    const ValueKinds other = kinds_of(files[1 - i].model.attributes());
+    std::string kinds;
+    const auto add = [&](const char* name, bool is_missing) {
+      if (is_missing) kinds += (kinds.empty() ? "" : ", ") + std::string(name);
+    };
+    add("colours", other.colors && !own.colors);
+    add("normals", other.normals && !own.normals);
+    add("material ids", other.materials != 0 && own.materials == 0);
+    if (kinds.empty()) continue;
+    print_warnings({fmt::format("{} has no {}: its voxels count as new, and take those of the "
+                                "nearest voxel of {} or given ones",
+                                paths[i], kinds, paths[1 - i])},
+                   session);
+  }
+}
+
 void run_combine(const CombineArguments& arguments, Session& session) {
   check_writable(arguments.edit.output);
   MemoryBudget memory = command_budget(arguments.edit.memory_limit);
-  const AlignedFiles files(session.subject, arguments.second, arguments.edit,
-                           {&memory, &session.progress});
+  const AlignedFiles files(session.subject, arguments.second, {&memory, &session.progress});
   const SetOperation operation = chosen_operation(arguments);
+  const std::vector<PlacedModel> placed = files.models().placed(operation);
+  if (placed.size() == 2 && !arguments.edit.drop_attributes)
+    warn_of_missing(placed, {session.subject, arguments.second}, session);
   write_edited(arguments.edit, files.models().result(operation), files.models().grid_of(operation),
-               files.first(), edit_text(operation, arguments.second), memory, session);
+               placed, edit_text(operation, arguments.second), memory, session);
 }
 
 struct DiffArguments {
@@ -172,7 +192,8 @@ void write_difference(const DiffArguments& arguments, Svdag differing, const Ali
   const CommandState asked = session;
   session.quiet = true;
   session.json = false;
-  write_edited(arguments.edit, std::move(differing), files.models().grid(), files.first(),
+  const PlacedModel source{files.first()};
+  write_edited(arguments.edit, std::move(differing), files.models().grid(), {&source, 1},
                edit_text(SetOperation::kSymmetric, arguments.second), memory, session);
   static_cast<CommandState&>(session) = asked;
 }
@@ -180,8 +201,7 @@ void write_difference(const DiffArguments& arguments, Svdag differing, const Ali
 void run_diff(const DiffArguments& arguments, Session& session) {
   if (!arguments.edit.output.empty()) check_writable(arguments.edit.output);
   MemoryBudget memory = command_budget(arguments.edit.memory_limit);
-  const AlignedFiles files(session.subject, arguments.second, arguments.edit,
-                           {&memory, &session.progress});
+  const AlignedFiles files(session.subject, arguments.second, {&memory, &session.progress});
   const auto count = [&](SetOperation operation) {
     return count_svdag(files.models().combine(operation).view()).voxels;
   };
@@ -224,7 +244,7 @@ void add_combine_command(const Command& program, Session& session) {
       .not_with(all)
       .not_with(common)
       .not_with(minus);
-  add_edit_options(command, arguments->edit, session);
+  add_edit_options(command, arguments->edit, session, true);
   command.when_parsed([arguments, &session] {
     if (!arguments->is_union && !arguments->is_intersection && !arguments->is_difference &&
         !arguments->is_symmetric)

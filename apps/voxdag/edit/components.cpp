@@ -55,7 +55,6 @@ void run(const ComponentsArguments& arguments, Session& session) {
   if (!edit.output.empty()) check_writable(edit.output);
   MemoryBudget memory = command_budget(edit.memory_limit);
   const DagModel file(session.subject, {&memory, &session.progress});
-  if (!edit.output.empty()) refuse_attributes(file, session.subject, edit);
   const std::vector<ComponentSizes> sizes =
       component_sizes(file.view(), arguments.neighbours, {&memory, &session.progress});
   if (!edit.output.empty()) {
@@ -66,7 +65,8 @@ void run(const ComponentsArguments& arguments, Session& session) {
     const CommandState asked = session;
     session.quiet = asked.quiet || asked.json;
     session.json = false;
-    write_edited(edit, std::move(dag), file.grid(), file,
+    const PlacedModel source{file};
+    write_edited(edit, std::move(dag), file.grid(), {&source, 1},
                  fmt::format("components of {} voxels or more", least), memory, session);
     static_cast<CommandState&>(session) = asked;
   }
@@ -99,10 +99,7 @@ void add_components_command(const Command& program, Session& session) {
               "Keep the components with N voxels or more")
       .needs(output)
       .not_with(largest);
-  command
-      .flag("--drop-attributes", edit.drop_attributes,
-            "Leave out the colours, normals and material ids of FILE")
-      .needs(output);
+  add_value_options(command, edit, false, [&edit] { return !edit.output.empty(); });
   add_memory_option(command, edit.memory_limit);
   add_json_option(command, session);
   add_threads_option(command, session);

@@ -11,10 +11,11 @@
 namespace voxdag::cli {
 
 void add_edit(const Command& command, Session& session, const Edit& edit,
-              const std::function<std::string()>& describe, const LongEdit& long_edit) {
+              const std::function<std::string()>& describe, const LongEdit& long_edit,
+              bool makes_voxels) {
   const auto arguments = std::make_shared<EditArguments>();
   command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
-  add_edit_options(command, *arguments, session);
+  add_edit_options(command, *arguments, session, makes_voxels);
   command.when_parsed([=, &session] {
     check_distinct({{"--output", arguments->output}}, session);
     session.work = [=, &session] {
@@ -33,11 +34,12 @@ void add_edit(const Command& command, Session& session, const Edit& edit,
         return;
       }
       const DagModel file(std::move(opened), work);
-      refuse_attributes(file, session.subject, *arguments);
-      Grid grid = file.grid();
+      Placing placing{file.grid()};
       Svdag dag =
-          edit(file.view(), grid, {session.subject, file.metadata().presentation.unit, work});
-      write_edited(*arguments, std::move(dag), grid, file, describe(), memory, session);
+          edit(file.view(), placing, {session.subject, file.metadata().presentation.unit, work});
+      const PlacedModel source{file, placing.orientation, placing.offset};
+      write_edited(*arguments, std::move(dag), placing.grid, {&source, 1}, describe(), memory,
+                   session);
     };
   });
 }

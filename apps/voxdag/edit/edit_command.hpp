@@ -14,16 +14,26 @@ struct EditContext {
   Work work;
 };
 
-/// Makes the DAG of a command. May change the grid.
-using Edit = std::function<Svdag(const SvdagView& dag, Grid& grid, const EditContext& context)>;
+/// The grid of the result, and where it has the voxels of the input.
+struct Placing {
+  Grid grid;
+  Orientation orientation{};
+  Vec3i offset{};
+};
+
+/// Makes the DAG of a command. May change the placing.
+using Edit =
+    std::function<Svdag(const SvdagView& dag, Placing& placing, const EditContext& context)>;
 
 /// Makes the plain DAG of a command from one with long pointers.
 using LongEdit = std::function<Svdag(const LongSvdagView& dag, const EditContext& context)>;
 
 /// Lets the command read FILE, apply the edit and write OUT. describe() says what was done. Without
-/// `long_edit`, files with long pointers are refused.
+/// `long_edit`, files with long pointers are refused. `makes_voxels`: the result may have voxels
+/// that the input does not have.
 void add_edit(const Command& command, Session& session, const Edit& edit,
-              const std::function<std::string()>& describe, const LongEdit& long_edit = {});
+              const std::function<std::string()>& describe, const LongEdit& long_edit = {},
+              bool makes_voxels = false);
 
 /// Adds `voxdag hollow`.
 void add_hollow_command(const Command& program, Session& session);

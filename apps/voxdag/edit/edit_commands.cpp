@@ -44,7 +44,7 @@ void add_crop_command(const Command& program, Session& session) {
       .required();
   add_edit(
       command, session,
-      [box](const SvdagView& dag, Grid&, const EditContext& context) {
+      [box](const SvdagView& dag, Placing&, const EditContext& context) {
         return crop(dag, *box, context.work);
       },
       [box] { return "cropped to " + text_of(box->lo) + "," + text_of(box->hi); },
@@ -72,9 +72,11 @@ void add_shift_command(const Command& program, Session& session) {
                "Leave out voxels that leave the grid; without it, that is an error");
   add_edit(
       command, session,
-      [arguments](const SvdagView& dag, Grid& grid, const EditContext& context) {
-        grid.levels = arguments->levels.value_or(grid.levels);
-        Svdag moved = shift(dag, arguments->by, grid.levels, context.work);
+      [arguments](const SvdagView& dag, Placing& placing, const EditContext& context) {
+        const int levels = arguments->levels.value_or(dag.levels);
+        placing.grid.levels = levels;
+        placing.offset = arguments->by;
+        Svdag moved = shift(dag, arguments->by, levels, context.work);
         if (arguments->drop_outside) return moved;
         const std::uint64_t lost = count_svdag(dag).voxels - count_svdag(moved.view()).voxels;
         if (lost != 0)
@@ -95,8 +97,9 @@ void add_mirror_command(const Command& program, Session& session) {
       .required();
   add_edit(
       command, session,
-      [axis](const SvdagView& dag, Grid&, const EditContext& context) {
-        return reorient(dag, mirrored(*axis), context.work);
+      [axis](const SvdagView& dag, Placing& placing, const EditContext& context) {
+        placing.orientation = mirrored(*axis);
+        return reorient(dag, placing.orientation, context.work);
       },
       [axis] { return fmt::format("mirrored along {}", "xyz"[*axis]); });
 }
@@ -116,8 +119,9 @@ void add_rotate_command(const Command& program, Session& session) {
                  "Number of quarter turns; one about z takes x to y");
   add_edit(
       command, session,
-      [arguments](const SvdagView& dag, Grid&, const EditContext& context) {
-        return reorient(dag, rotated(arguments->axis, arguments->turns), context.work);
+      [arguments](const SvdagView& dag, Placing& placing, const EditContext& context) {
+        placing.orientation = rotated(arguments->axis, arguments->turns);
+        return reorient(dag, placing.orientation, context.work);
       },
       [arguments] {
         return fmt::format("rotated about {} by {} quarter turns", "xyz"[arguments->axis],
@@ -146,14 +150,15 @@ void add_grow_command(const Command& program, Session& session, bool is_dilation
   add_neighbours_option(command, arguments->neighbours);
   add_edit(
       command, session,
-      [=](const SvdagView& dag, Grid&, const EditContext& context) {
+      [=](const SvdagView& dag, Placing&, const EditContext& context) {
         return is_dilation ? dilate(dag, arguments->steps, arguments->neighbours, context.work)
                            : erode(dag, arguments->steps, arguments->neighbours, context.work);
       },
       [=] {
         return fmt::format("{} by {} steps to {} neighbours", is_dilation ? "dilated" : "eroded",
                            arguments->steps, arguments->neighbours == Neighbours::k6 ? 6 : 26);
-      });
+      },
+      {}, is_dilation);
 }
 
 void add_fill_command(const Command& program, Session& session) {
@@ -164,10 +169,10 @@ void add_fill_command(const Command& program, Session& session) {
       "grid.");
   add_edit(
       command, session,
-      [](const SvdagView& dag, Grid&, const EditContext& context) {
+      [](const SvdagView& dag, Placing&, const EditContext& context) {
         return fill_cavities(dag, context.work);
       },
-      [] { return "filled"; });
+      [] { return "filled"; }, {}, true);
 }
 
 }  // namespace

@@ -5,21 +5,19 @@
 
 #include "cli/parse.hpp"
 #include "cli/written_files.hpp"
-#include "voxdag/core/error.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/cpu/presentation.hpp"
-#include "voxdag/file/model/edited.hpp"
 
 namespace voxdag::cli {
 
-void add_edit_options(const Command& command, EditArguments& arguments, Session& session) {
+void add_edit_options(const Command& command, EditArguments& arguments, Session& session,
+                      bool makes_voxels) {
   command.text("-o,--output", arguments.output, "OUT", "The .vdag file to write").required();
   const Option compact = command.flag("--compact", arguments.compact,
                                       "Write the compact form (default: the form of the input)");
   command.flag("--plain", arguments.plain, "Write the plain form, the layout of the paper")
       .not_with(compact);
-  command.flag("--drop-attributes", arguments.drop_attributes,
-               "Leave out colours, normals and material ids; files that have some are refused "
-               "without it");
+  add_value_options(command, arguments, makes_voxels);
   add_memory_option(command, arguments.memory_limit);
   add_threads_option(command, session);
   add_json_option(command, session);
@@ -50,19 +48,58 @@ void add_neighbours_option(const Command& command, Neighbours& neighbours) {
       "6|26", "Neighbours share a face (6), or a face, an edge or a corner (26, the default)");
 }
 
-void refuse_attributes(const DagModel& file, const std::string& path,
-                       const EditArguments& arguments) {
-  if (!arguments.drop_attributes && !file.attributes().is_empty())
-    throw Error(path, "",
-                "has colours, normals or material ids, which this command cannot keep: "
-                "--drop-attributes leaves them out");
+void add_value_options(const Command& command, EditArguments& arguments, bool makes_voxels,
+                       const std::function<bool()>& is_written) {
+  EditedValues& values = arguments.values;
+  const auto is_kept = [&arguments, is_written] {
+    return is_written() && !arguments.drop_attributes;
+  };
+  const char* const why_not = "where no attributes are written";
+  if (makes_voxels) {
+    command
+        .parsed(
+            "--color", values.new_values.color, parse_color, "R,G,B",
+            "Colour of new voxels, sRGB, from 0 to 255 (default: that of the nearest old voxel)")
+        .only_if(is_kept, why_not);
+    command
+        .parsed(
+            "--material", values.new_values.material,
+            [](const std::string& text) {
+              const auto id = read_whole_number(text);
+              if (!id || *id < 0 || *id >= kMaxMaterials)
+                throw std::invalid_argument("must be a whole number from 0 to 65534");
+              return static_cast<std::uint16_t>(*id);
+            },
+            "N", "Material id of new voxels (default: that of the nearest old voxel)")
+        .only_if(is_kept, why_not);
+  }
+  command
+      .number("--color-bound", values.bounds.color_bound, NumberRange::from(0, 1), "DIFFERENCE",
+              "How far a colour may change when the colours are encoded again, in the units of "
+              "build (0: not at all)")
+      .only_if(is_kept, why_not);
+  command
+      .number("--normal-bound", values.bounds.normal_bound_degrees, NumberRange::from(0, 180),
+              "DEGREES", "How far a normal may turn when it is encoded again (0: not at all)")
+      .only_if(is_kept, why_not);
+  command
+      .flag("--drop-attributes", arguments.drop_attributes,
+            "Leave out colours, normals and material ids")
+      .only_if(is_written, "without --output");
 }
 
 void write_edited(const EditArguments& arguments, Svdag dag, const Grid& grid,
-                  const DagModel& source, const std::string& edit, MemoryBudget& memory,
-                  Session& session) {
-  write_edited(arguments, edited(source, std::move(dag), grid, edit, &memory),
-               arguments.compact || (!arguments.plain && source.is_compact()), memory, session);
+                  std::span<const PlacedModel> sources, const std::string& edit,
+                  MemoryBudget& memory, Session& session) {
+  const DagModel& first = sources[0].model;
+  const bool compact = arguments.compact || (!arguments.plain && first.is_compact());
+  const Work work{&memory, &session.progress};
+  DagModel model = with_file_name(session.subject, [&] {
+    return arguments.drop_attributes
+               ? edited(first, std::move(dag), grid, edit, work)
+               : edited(sources, std::move(dag), grid, edit, arguments.values, work);
+  });
+  write_edited(arguments, std::move(model), compact, memory, session);
 }
 
 void write_edited(const EditArguments& arguments, DagModel model, bool compact,

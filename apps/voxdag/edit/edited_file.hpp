@@ -1,5 +1,7 @@
 #pragma once
 /// What the commands that change the voxels of a DAG have in common.
+#include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,19 +10,27 @@
 #include "cli/session.hpp"
 #include "voxdag/algebra/grow.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/file/model/edited.hpp"
 
 namespace voxdag::cli {
 
 struct EditArguments {
   std::string output;
   bool compact = false, plain = false, drop_attributes = false;
+  EditedValues values;
   std::uint64_t memory_limit = 0;
 };
 
-/// Adds --output, --compact, --plain, --drop-attributes, --memory, --threads, --json and
-/// --quiet. They belong to `arguments`.
-void add_edit_options(const Command& command, EditArguments& arguments, Session& session);
+/// Adds --output, --compact, --plain, the options of add_value_options(), --memory, --threads,
+/// --json and --quiet. They belong to `arguments`.
+void add_edit_options(const Command& command, EditArguments& arguments, Session& session,
+                      bool makes_voxels = false);
+
+/// Adds --color-bound, --normal-bound and --drop-attributes, and --color and --material if the
+/// command makes new voxels. `is_written`: whether the command writes a file.
+void add_value_options(
+    const Command& command, EditArguments& arguments, bool makes_voxels,
+    const std::function<bool()>& is_written = [] { return true; });
 
 /// Adds --output, --compact and --plain for a command whose output is optional: `help` says what it
 /// writes. Returns --output.
@@ -30,17 +40,13 @@ Option add_optional_output(const Command& command, EditArguments& arguments,
 /// Adds --neighbours.
 void add_neighbours_option(const Command& command, Neighbours& neighbours);
 
-/// Throws Error if the file has colours, normals or material ids and --drop-attributes was not
-/// given: a command that changes voxels keeps none.
-void refuse_attributes(const DagModel& file, const std::string& path,
-                       const EditArguments& arguments);
-
-/// Writes `dag` in the form that the options ask for, else in that of `source`. The grid is `grid`;
-/// the metadata is that of `source` and says in `build` how the voxels were made: `edit`. Prints a
-/// summary.
+/// Writes `dag` in the form that the options ask for, else in that of the first of `sources`. The
+/// grid is `grid`; voxels keep the attributes of `sources` unless --drop-attributes was given. The
+/// metadata is that of the first source and says in `build` how the voxels were made: `edit`.
+/// Prints a summary.
 void write_edited(const EditArguments& arguments, Svdag dag, const Grid& grid,
-                  const DagModel& source, const std::string& edit, MemoryBudget& memory,
-                  Session& session);
+                  std::span<const PlacedModel> sources, const std::string& edit,
+                  MemoryBudget& memory, Session& session);
 /// Writes `model` in the compact or the plain form. Prints a summary with these counts.
 void write_edited(const EditArguments& arguments, DagModel model, bool compact,
                   MemoryBudget& memory, Session& session,

@@ -97,8 +97,8 @@ void add_hollow_command(const Command& program, Session& session) {
                    "radius, a length as --wall. May be given several times");
   add_edit(
       command, session,
-      [arguments](const SvdagView& dag, Grid& grid, const EditContext& context) {
-        return hollowed(*arguments, dag, grid, context);
+      [arguments](const SvdagView& dag, Placing& placing, const EditContext& context) {
+        return hollowed(*arguments, dag, placing.grid, context);
       },
       [arguments] {
         return fmt::format("hollow with a wall of {} and {} drains", arguments->wall_text,

@@ -4,12 +4,20 @@
 #include "voxdag/algebra/shift.hpp"
 
 namespace voxdag {
+namespace {
+
+bool keeps_first(SetOperation operation) {
+  return operation == SetOperation::kIntersection || operation == SetOperation::kDifference;
+}
+
+}  // namespace
 
 AlignedModels::AlignedModels(const DagModel& first, const DagModel& second, Work work)
-    : first_(first), work_(work) {
+    : first_(first), second_(second), work_(work) {
   const AlignedGrids aligned = align_grids(first.grid(), second.grid());
   grid_ = aligned.grid;
   place_ = aligned.first;
+  second_place_ = aligned.second;
   dag_a_ = moved(first, aligned.first, moved_a_);
   dag_b_ = moved(second, aligned.second, moved_b_);
 }
@@ -25,9 +33,12 @@ Svdag AlignedModels::combine(SetOperation operation) const {
 }
 
 const Grid& AlignedModels::grid_of(SetOperation operation) const {
-  const bool keeps_first =
-      operation == SetOperation::kIntersection || operation == SetOperation::kDifference;
-  return keeps_first ? first_.grid() : grid_;
+  return keeps_first(operation) ? first_.grid() : grid_;
+}
+
+std::vector<PlacedModel> AlignedModels::placed(SetOperation operation) const {
+  if (keeps_first(operation)) return {{first_}};
+  return {{first_, {}, place_}, {second_, {}, second_place_}};
 }
 
 Svdag AlignedModels::result(SetOperation operation) const {

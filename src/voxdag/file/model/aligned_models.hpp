@@ -2,7 +2,7 @@
 /// Set operations on models whose grids may differ.
 #include "voxdag/algebra/combine.hpp"
 #include "voxdag/core/parallel/work.hpp"
-#include "voxdag/file/model/dag_model.hpp"
+#include "voxdag/file/model/edited.hpp"
 
 namespace voxdag {
 
@@ -24,15 +24,17 @@ class AlignedModels {
   const Grid& grid_of(SetOperation operation) const;
   /// Returns the result in grid_of(operation).
   Svdag result(SetOperation operation) const;
+  /// Returns the models whose voxels the result has, and where it has them: both, or the first.
+  std::vector<PlacedModel> placed(SetOperation operation) const;
 
  private:
   /// Returns the model's DAG in the common grid; `storage` holds it if it had to move.
   SvdagView moved(const DagModel& model, Vec3i by, Svdag& storage) const;
 
-  const DagModel& first_;
+  const DagModel &first_, &second_;
   Work work_;
   Grid grid_;
-  Vec3i place_;  ///< Voxel (0,0,0) of the first model in the common grid.
+  Vec3i place_, second_place_;  ///< Voxels (0,0,0) of the models in the common grid.
   Svdag moved_a_, moved_b_;
   SvdagView dag_a_, dag_b_;
 };
