@@ -10,7 +10,7 @@
 #include <set>
 
 #include "sponge.hpp"
-#include "voxdag/algebra/attributes/cell_finder.hpp"
+#include "voxdag/algebra/attributes/number_finder.hpp"
 #include "voxdag/algebra/attributes/stored_reader.hpp"
 #include "voxdag/file/model/dag_model.hpp"
 #include "voxdag/stored/svdag/for_each_voxel.hpp"
@@ -271,7 +271,7 @@ class ColoredEdit : public Edit {
 
   static Values values_of(const std::string& file) {
     const DagModel model(path(file));
-    CellFinder finder(model.view(), model.attributes().index);
+    NumberFinder finder(model.view(), model.attributes().index);
     StoredReader reader({model.attributes(), {}});
     Values values;
     for_each_voxel(model.view(), whole_grid(model.grid().levels), [&](Vec3i v) {
