@@ -100,4 +100,5 @@ PYBIND11_MODULE(_voxdag, module) {
   add_edits(dag);
   add_exports(dag);
   add_pictures(dag);
+  add_live_edits(module);
 }

@@ -18,12 +18,13 @@ class CpuScene {
   CpuScene(const SvdagView& dag) : CpuScene(VoxelSet(dag)) {}
   CpuScene(const EsvoView& esvo) : CpuScene(VoxelSet(esvo)) {}
   /// `rays` is an upper bound on the number of rays that will be cast. For few rays the packets'
-  /// structure would cost more time than it saves, so it is not built.
+  /// structure would cost more time than it saves, so it is not built. 0 never builds it: rays then
+  /// only walk from the root of a DAG (SvdagView::root).
   CpuScene(const VoxelSet& voxels, std::uint64_t rays = std::numeric_limits<std::uint64_t>::max())
       : voxels_(voxels) {
     constexpr std::uint64_t kWordsPerRay = 16;
     if (const SvdagView* dag = voxels.dag();
-        dag != nullptr && dag->node_words() / kWordsPerRay <= rays)
+        dag != nullptr && rays != 0 && dag->node_words() / kWordsPerRay <= rays)
       packets_.emplace(BoundedDag(SvdagNodes(*dag)));
   }
   // NOLINTEND
