@@ -1,4 +1,4 @@
-/// Rays: Dag.cast and Dag.occluded.
+/// Rays: cast and occluded, of Dag and of Snapshot.
 #include <cmath>
 #include <limits>
 
@@ -15,9 +15,9 @@ namespace voxdag::python {
 namespace {
 
 /// Returns the place from which the origins of rays are measured, because rays are in float32.
-Vec3d near(const Dag& dag) { return float_origin(dag.grid().bounds()); }
+Vec3d near(const SceneParts& dag) { return float_origin(dag.grid.bounds()); }
 
-std::vector<Vec3f> points_of(const Dag& dag, const ArrayLike& array, const char* name) {
+std::vector<Vec3f> points_of(const SceneParts& dag, const ArrayLike& array, const char* name) {
   const Vec3d origin = near(dag);
   std::vector<Vec3f> points;
   for (const Vec3d p : rows_of<double>(array, name))
@@ -26,8 +26,8 @@ std::vector<Vec3f> points_of(const Dag& dag, const ArrayLike& array, const char*
 }
 
 /// Returns the rays of two arrays of shape (N, 3), or of one row and N.
-std::vector<Ray> rays_of(const Dag& dag, const ArrayLike& origins, const ArrayLike& directions,
-                         float t_min, float t_max) {
+std::vector<Ray> rays_of(const SceneParts& dag, const ArrayLike& origins,
+                         const ArrayLike& directions, float t_min, float t_max) {
   const std::vector<Vec3f> from = points_of(dag, origins, "origins");
   const std::vector<Vec3f> along = rows_of<float>(directions, "directions");
   const std::size_t count = std::max(from.size(), along.size());
@@ -39,24 +39,24 @@ std::vector<Ray> rays_of(const Dag& dag, const ArrayLike& origins, const ArrayLi
   return rays;
 }
 
-std::vector<Hit> cast_all(const Dag& dag, const std::vector<Ray>& rays) {
+std::vector<Hit> cast_all(const SceneParts& dag, const std::vector<Ray>& rays) {
   return run_work([&](Work work) {
     std::vector<Hit> hits(rays.size());
-    Grid grid = dag.grid();
+    Grid grid = dag.grid;
     grid.origin = grid.origin - near(dag);
-    trace_batch(dag.scene(), grid, rays, hits, work);
+    trace_batch(dag.scene, grid, rays, hits, work);
     return hits;
   });
 }
 
-py::dict cast(const Dag& dag, const ArrayLike& origins, const ArrayLike& directions, float t_min,
-              float t_max) {
+py::dict cast(const SceneParts& dag, const ArrayLike& origins, const ArrayLike& directions,
+              float t_min, float t_max) {
   const std::vector<Hit> hits = cast_all(dag, rays_of(dag, origins, directions, t_min, t_max));
   std::vector<float> t(hits.size());
   std::vector<Vec3i> voxels(hits.size(), Vec3i{-1, -1, -1});
   std::vector<std::int8_t> faces(hits.size(), -1);
-  std::vector<Value8> colors(dag.look().has_colors() ? hits.size() : 0);
-  LookReader look(dag.look());
+  std::vector<Value8> colors(dag.look.has_colors() ? hits.size() : 0);
+  LookReader look(dag.look);
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const Hit& hit = hits[i];
     t[i] = hit.hit ? hit.t : std::numeric_limits<float>::infinity();
@@ -69,11 +69,12 @@ py::dict cast(const Dag& dag, const ArrayLike& origins, const ArrayLike& directi
   result["t_hit"] = array_of(t);
   result["voxel"] = array_of(voxels);
   result["face"] = array_of(faces);
-  if (dag.look().has_colors()) result["color"] = array_of(colors);
+  if (dag.look.has_colors()) result["color"] = array_of(colors);
   return result;
 }
 
-py::array_t<bool> occluded(const Dag& dag, const ArrayLike& origins, const ArrayLike& targets) {
+py::array_t<bool> occluded(const SceneParts& dag, const ArrayLike& origins,
+                           const ArrayLike& targets) {
   const std::vector<Vec3f> from = points_of(dag, origins, "origins"),
                            to = points_of(dag, targets, "targets");
   if (from.size() != to.size() && from.size() != 1 && to.size() != 1)
@@ -90,11 +91,15 @@ py::array_t<bool> occluded(const Dag& dag, const ArrayLike& origins, const Array
   return result;
 }
 
-}  // namespace
-
-void add_rays(DagClass& dag) {
-  dag.def("cast", &cast, py::arg("origins"), py::arg("directions"), py::kw_only(),
-          py::arg("t_min") = 0.0f, py::arg("t_max") = std::numeric_limits<float>::infinity(),
+template <class Shown, class Class>
+void define_rays(Class& shown) {
+  shown
+      .def(
+          "cast",
+          [](const Shown& of, const ArrayLike& origins, const ArrayLike& directions, float t_min,
+             float t_max) { return cast(of.parts(), origins, directions, t_min, t_max); },
+          py::arg("origins"), py::arg("directions"), py::kw_only(), py::arg("t_min") = 0.0f,
+          py::arg("t_max") = std::numeric_limits<float>::infinity(),
           R"(Casts rays and returns what they hit first, as a dict of arrays.
 
 origins, directions: (N, 3) real numbers in world units, or one row for all rays.
@@ -103,10 +108,20 @@ t_hit: (N,) float32, in lengths of the direction; inf for a miss.
 voxel: (N, 3) int32; -1 for a miss.
 face: (N,) int8, 0 to 5 for -x, +x, -y, +y, -z, +z; -1 for a miss or a ray that starts inside.
 color: (N, 3) uint8, sRGB, if the DAG has colours.)")
-      .def("occluded", &occluded, py::arg("origins"), py::arg("targets"),
-           R"(Tells whether voxels lie on the segments from origins to targets. Returns (N,) bool.
+      .def(
+          "occluded",
+          [](const Shown& of, const ArrayLike& origins, const ArrayLike& targets) {
+            return occluded(of.parts(), origins, targets);
+          },
+          py::arg("origins"), py::arg("targets"),
+          R"(Tells whether voxels lie on the segments from origins to targets. Returns (N,) bool.
 
 origins, targets: (N, 3) real numbers in world units, or one row for all segments.)");
 }
+
+}  // namespace
+
+void add_rays(DagClass& dag) { define_rays<Dag>(dag); }
+void add_rays(SnapshotClass& snapshot) { define_rays<Snapshot>(snapshot); }
 
 }  // namespace voxdag::python

@@ -10,10 +10,19 @@
 
 #include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/cpu/presentation.hpp"
+#include "voxdag/edit/editable_dag.hpp"
 #include "voxdag/file/model/dag_model.hpp"
 #include "voxdag/stored/attributes/look.hpp"
 
 namespace voxdag::python {
+
+/// What rays and pictures need of a Dag or of a Snapshot.
+struct SceneParts {
+  const Grid& grid;
+  const CpuScene& scene;
+  LookView look;
+  const Presentation& presentation;
+};
 
 /// A DAG that Python objects share. It never changes, so several threads may use it.
 class Dag {
@@ -35,6 +44,7 @@ class Dag {
     if (!scene_) scene_.emplace(VoxelSet(view()));
     return *scene_;
   }
+  SceneParts parts() const { return {grid(), scene(), look(), model_.metadata().presentation}; }
 
  private:
   DagModel model_;
@@ -44,6 +54,24 @@ class Dag {
 
 using DagPointer = std::shared_ptr<Dag>;
 using DagClass = pybind11::class_<Dag, DagPointer>;
+
+/// One version of a DAG that is being edited, for rays and pictures. It keeps the Dag that it began
+/// with, because it reads values from it.
+class Snapshot {
+ public:
+  Snapshot(DagPointer base, EditSnapshot snapshot)
+      : base_(std::move(base)), snapshot_(std::move(snapshot)), scene_(snapshot_.view(), 0) {}
+
+  SceneParts parts() const {
+    return {base_->grid(), scene_, snapshot_.values(), base_->model().metadata().presentation};
+  }
+
+ private:
+  DagPointer base_;
+  EditSnapshot snapshot_;
+  CpuScene scene_;
+};
+using SnapshotClass = pybind11::class_<Snapshot, std::shared_ptr<Snapshot>>;
 
 /// The first voxel of a box, and one past the last on each axis.
 using Window = std::array<std::array<std::int32_t, 3>, 2>;
@@ -64,9 +92,13 @@ void warn(const std::string& text);
 /// Add the functions that make DAGs, and the methods of Dag, to the module.
 void add_makers(pybind11::module_& module);
 void add_rays(DagClass& dag);
+void add_rays(SnapshotClass& snapshot);
 void add_queries(DagClass& dag);
 void add_edits(DagClass& dag);
 void add_exports(DagClass& dag);
 void add_pictures(DagClass& dag);
+void add_pictures(SnapshotClass& snapshot);
+/// Adds _LiveEdit, and Snapshot.
+void add_live_edits(pybind11::module_& module);
 
 }  // namespace voxdag::python

@@ -111,4 +111,5 @@ formats, and pages.)")
   add_edits(dag);
   add_exports(dag);
   add_pictures(dag);
+  add_live_edits(module);
 }

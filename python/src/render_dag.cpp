@@ -1,4 +1,4 @@
-/// Pictures: Dag.render.
+/// Pictures: render, of Dag and of Snapshot.
 #include <pybind11/stl.h>
 
 #include <array>
@@ -22,7 +22,7 @@ std::optional<Vec3d> vector_of(const std::optional<Triple>& values) {
   return Vec3d{(*values)[0], (*values)[1], (*values)[2]};
 }
 
-ImageRgb8 render(const Dag& dag, int width, int height, const std::optional<Triple>& eye,
+ImageRgb8 render(const SceneParts& dag, int width, int height, const std::optional<Triple>& eye,
                  const std::optional<Triple>& target, const std::optional<Triple>& up,
                  std::optional<double> fov, const std::optional<Triple>& sun, int samples,
                  bool shadows, int occlusion, bool colors) {
@@ -37,17 +37,17 @@ ImageRgb8 render(const Dag& dag, int width, int height, const std::optional<Trip
   options.view.target = vector_of(target);
   options.view.up = vector_of(up);
   options.view.vertical_fov_degrees = fov;
-  show_as(dag.model().metadata().presentation, options.view);
-  if (dag.model().metadata().presentation.cubes) options.cube_pixels = 0;
+  show_as(dag.presentation, options.view);
+  if (dag.presentation.cubes) options.cube_pixels = 0;
   options.ground = true;
   options.sun = vector_of(sun);
   options.samples_per_pixel = samples;
   options.shadows = shadows;
   options.occlusion_samples = occlusion;
-  if (colors) options.look = dag.look();
+  if (colors) options.look = dag.look;
   options.with_normal = options.with_occlusion = options.with_shadow = false;
   return run_work([&](Work work) {
-    const RenderedImage image = render_image(dag.scene(), dag.grid(), options, work);
+    const RenderedImage image = render_image(dag.scene, dag.grid, options, work);
     ImageRgb8 pixels(width, height);
     for (std::size_t i = 0; i < image.rgb.size(); ++i)
       for (int c = 0; c < 3; ++c)
@@ -63,18 +63,17 @@ py::array_t<std::uint8_t> array_of_image(const ImageRgb8& image) {
   return array;
 }
 
-}  // namespace
-
-void add_pictures(DagClass& dag) {
+template <class Shown, class Class>
+void define_render(Class& shown) {
   const auto none = py::none();
-  dag.def(
+  shown.def(
       "render",
-      [](const Dag& d, int width, int height, const std::optional<Triple>& eye,
+      [](const Shown& of, int width, int height, const std::optional<Triple>& eye,
          const std::optional<Triple>& target, const std::optional<Triple>& up,
          std::optional<double> fov, const std::optional<Triple>& sun, int samples, bool shadows,
          int occlusion, bool colors) {
-        return array_of_image(render(d, width, height, eye, target, up, fov, sun, samples, shadows,
-                                     occlusion, colors));
+        return array_of_image(render(of.parts(), width, height, eye, target, up, fov, sun, samples,
+                                     shadows, occlusion, colors));
       },
       py::kw_only(), py::arg("width") = 960, py::arg("height") = 540, py::arg("eye") = none,
       py::arg("target") = none, py::arg("up") = none, py::arg("fov") = none, py::arg("sun") = none,
@@ -88,10 +87,18 @@ up: (x, y, z), the direction that points up; sun: the direction towards the sun.
 fov: vertical field of view, in degrees. Default of these: a view that shows the scene well.
 samples: rays per pixel. occlusion: rays of ambient occlusion per pixel, 0 to 4096.
 shadows: of the sun. colors: those of the DAG, else grey.)");
+}
+
+}  // namespace
+
+void add_pictures(SnapshotClass& snapshot) { define_render<Snapshot>(snapshot); }
+
+void add_pictures(DagClass& dag) {
+  define_render<Dag>(dag);
   dag.def("_jpeg", [](const Dag& d) {
     constexpr int kQuality = 80;
-    return py::bytes(
-        encode_jpeg(render(d, 640, 360, {}, {}, {}, {}, {}, 4, true, 64, true), kQuality));
+    return py::bytes(encode_jpeg(
+        render(d.parts(), 640, 360, {}, {}, {}, {}, {}, 4, true, 64, true), kQuality));
   });
 }
 

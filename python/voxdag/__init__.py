@@ -19,9 +19,11 @@ import numpy as _numpy
 
 from ._voxdag import Dag, __version__  # noqa: F401
 from . import _pages, _voxdag
+from ._edit import Edit, edit as _edit
 from ._signatures import documented as _documented
+from ._voxdag import Snapshot  # noqa: F401
 
-__all__ = ["Dag", "build", "build_mesh", "from_coords", "from_dense", "from_points", "import_file",
+__all__ = ["Dag", "Edit", "Snapshot", "build", "build_mesh", "from_coords", "from_dense", "from_points", "import_file",
            "load", "open"]
 
 
@@ -233,6 +235,7 @@ Dag.view = _view
 Dag.__array__ = _array
 Dag.__reduce__ = _reduce
 Dag.shape = property(lambda dag: (dag.resolution,) * 3, doc="The shape of to_dense().")
+Dag.edit = _edit
 Dag.to_mesh = _to_mesh
 Dag.to_trimesh = _to_trimesh
 Dag.__repr__ = _repr
