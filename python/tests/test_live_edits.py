@@ -151,7 +151,7 @@ def test_filters_copies_stamps_and_voxels():
 
 def test_snapshots_are_read_while_edits_go_on():
     dag = scene(colors=True)
-    view = {"eye": (60, 50, 70), "target": (16, 16, 16), "width": 64, "height": 48, "occlusion": 4}
+    view = {"eye": (60, 50, 70), "target": (16, 16, 16), "width": 320, "height": 240, "occlusion": 4}  # voxels, no coarser cells
     e = dag.edit()
     old = e.snapshot()
     shown = old.render(**view)
@@ -162,14 +162,14 @@ def test_snapshots_are_read_while_edits_go_on():
     new, edited = e.snapshot(), e.dag()
     assert np.array_equal(new.render(**view), edited.render(**view))
     origins = np.random.default_rng(1).uniform(0, 32, (500, 3)) + (0, 0, 60)
-    a, b = new.cast(origins, (0.1, 0, -1)), edited.cast(origins, (0.1, 0, -1))
+    a, b = new.cast(origins, [(0.1, 0, -1)]), edited.cast(origins, [(0.1, 0, -1)])
     for key in a:
         np.testing.assert_array_equal(a[key], b[key])
-    assert not np.array_equal(old.cast(origins, (0.1, 0, -1))["t_hit"], a["t_hit"])
+    assert not np.array_equal(old.cast(origins, [(0.1, 0, -1)])["t_hit"], a["t_hit"])
 
     def look():
         for _ in range(20):
-            np.testing.assert_array_equal(new.cast(origins, (0.1, 0, -1))["t_hit"], a["t_hit"])
+            np.testing.assert_array_equal(new.cast(origins, [(0.1, 0, -1)])["t_hit"], a["t_hit"])
 
     reader = threading.Thread(target=look)
     reader.start()
@@ -182,11 +182,11 @@ def test_a_tiny_dag_grows():
     dag = voxdag.from_coords([[0, 0, 0]], resolution=8)
     e = dag.edit()
     e.add_box((0, 0, 0), (8, 8, 4))
-    hits = e.snapshot().cast([(4.5, 4.5, 20)], (0, 0, -1))
+    hits = e.snapshot().cast([(4.5, 4.5, 20)], [(0, 0, -1)])
     assert hits["voxel"].tolist() == [[4, 4, 3]]
     e.remove_half_space((0, 0, 100), (0, 0, 1))
     assert len(e.dag()) == 0
-    assert np.isinf(e.snapshot().cast([(4.5, 4.5, 20)], (0, 0, -1))["t_hit"]).all()
+    assert np.isinf(e.snapshot().cast([(4.5, 4.5, 20)], [(0, 0, -1)])["t_hit"]).all()
 
 
 def test_bad_arguments_change_nothing():
@@ -204,7 +204,7 @@ def test_bad_arguments_change_nothing():
             (lambda: e.add_box((1, 2, 3), (0, 5, 5)), "max is less than its min"),
             (lambda: e.smooth((1, 2, 3), 1e5), "radius"),
             (lambda: e.stamp(dag, mode="join"), "mode must be"),
-            (lambda: e.stamp(dag, turn=("w", 1)), "w"),
+            (lambda: e.stamp(dag, turn=("w", 1)), "axis must be"),
             (lambda: e.add_voxels([[0, 0, 32]]), "outside of the grid")):
         with pytest.raises(ValueError, match=text):
             call()
