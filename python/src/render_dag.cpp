@@ -97,8 +97,8 @@ void add_pictures(DagClass& dag) {
   define_render<Dag>(dag);
   dag.def("_jpeg", [](const Dag& d) {
     constexpr int kQuality = 80;
-    return py::bytes(encode_jpeg(
-        render(d.parts(), 640, 360, {}, {}, {}, {}, {}, 4, true, 64, true), kQuality));
+    return py::bytes(
+        encode_jpeg(render(d.parts(), 640, 360, {}, {}, {}, {}, {}, 4, true, 64, true), kQuality));
   });
 }
 
