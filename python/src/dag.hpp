@@ -16,7 +16,7 @@
 
 namespace voxdag::python {
 
-/// What rays and pictures need of a Dag or of a Snapshot.
+/// The parts of a Dag or a Snapshot that rays and pictures need.
 struct SceneParts {
   const Grid& grid;
   const CpuScene& scene;

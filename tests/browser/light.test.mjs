@@ -20,7 +20,7 @@ function writeSky() {
   for (let y = 0; y < height; ++y)
     for (let x = 0; x < width; ++x) {
       const isSun = Math.abs(y - 11) < 1 && Math.abs(x - 48) < 1;
-      // Of 4 bytes the last is the exponent: 128 is 2^0, 136 is 2^8.
+      // The last of 4 bytes is the exponent: 128 is 2^0, 136 is 2^8.
       bytes.push(...(isSun ? [255, 220, 150, 136] : y < height / 2 ? [60, 90, 200 - 8 * y, 129] : [120, 50, 30, 127]));
     }
   writeFileSync(file, Buffer.concat([Buffer.from(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${height} +X ${width}\n`), Buffer.from(bytes)]));

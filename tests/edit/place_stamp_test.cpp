@@ -36,7 +36,7 @@ TEST(PlaceStamp, VoxelsStayInTheirPlaceByDefault) {
 
 TEST(PlaceStamp, TheLowerCornerComesToThePlaceAndRoundsToVoxels) {
   EXPECT_EQ(placed({.at = Vec3d{0.2, 2.3, 1}}), (std::vector<Vec3i>{{0, 5, 2}, {2, 6, 2}}));
-  // What lies outside of the grid is left out.
+  // Voxels outside of the grid are left out.
   EXPECT_EQ(placed({.at = Vec3d{-1, 0, 0}}), (std::vector<Vec3i>{{0, 1, 0}}));
   EXPECT_TRUE(placed({.at = Vec3d{-100, 0, 0}}).empty());
 }

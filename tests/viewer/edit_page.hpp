@@ -1,5 +1,5 @@
 #pragma once
-/// What a page does that edits a scene: sends requests, and keeps a copy of the DAG up to date.
+/// A page that edits a scene: sends requests, and keeps a copy of the DAG up to date.
 #include <algorithm>
 #include <cstring>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-/// What the page must know after an edit, as bytes: the new words, and the roots.
+/// An edit as bytes for the page: the new words, and the roots.
 ///
 /// All numbers are unsigned, of 32 bits, in the order of bytes of this machine, which must be
 /// little-endian:

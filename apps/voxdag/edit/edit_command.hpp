@@ -7,7 +7,7 @@
 
 namespace voxdag::cli {
 
-/// What an edit may use.
+/// The file, its unit, and the memory and progress of an edit.
 struct EditContext {
   const std::string& path;  ///< The input, for errors.
   const std::string& unit;  ///< Of the coordinates; empty: not known.

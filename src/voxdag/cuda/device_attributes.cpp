@@ -32,7 +32,7 @@ DevicePages upload_pages(ValuePagesView& view) {
 }  // namespace
 
 struct DeviceAttributes::Memory {
-  /// What versions of an edited DAG share.
+  /// The attributes that all versions of an edited DAG share.
   struct Stored {
     DeviceBuffer<std::uint64_t> sums;
     DevicePages colors, normals;

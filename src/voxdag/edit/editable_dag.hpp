@@ -24,8 +24,8 @@
 
 namespace voxdag {
 
-/// What an edit gives to voxels, as far as the DAG has such values. Voxels that an edit adds take
-/// what is not set from the voxel that was nearest before: of the shape's middle for a shape.
+/// Values that an edit gives to voxels, as far as the DAG has such values. For a value that is not
+/// set, a voxel that an edit adds takes that of the voxel that was nearest to the shape's middle.
 struct EditPaint {
   std::optional<Value8> color{};            ///< sRGB encoded.
   std::optional<std::uint32_t> material{};  ///< Below the number of the DAG's materials.

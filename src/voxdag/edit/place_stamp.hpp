@@ -12,8 +12,8 @@ namespace voxdag {
 
 struct StampPlace {
   Orientation orientation{};  ///< Applied first.
-  /// Where the lower corner of the box of the stamp's voxels comes, in world units, rounded to a
-  /// corner of voxels; by default where this corner is in the stamp's own grid.
+  /// The new place of the lower corner of the box of the stamp's voxels, in world units, rounded to
+  /// a corner of voxels; by default, its place in the stamp's own grid.
   std::optional<Vec3d> at{};
 };
 

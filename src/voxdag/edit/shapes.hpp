@@ -12,7 +12,7 @@
 
 namespace voxdag {
 
-/// Where the voxels of a cell are. kMixed may also be said of a cell that is all inside or outside.
+/// The place of a cell's voxels: all outside of a shape, all inside, or not decided (kMixed).
 enum class CellPlace { kOutside, kMixed, kInside };
 
 /// The largest coordinate and radius of a shape, in subvoxels: two million voxels.

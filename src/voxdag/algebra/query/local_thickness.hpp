@@ -12,8 +12,8 @@ namespace voxdag {
 /// The squares of the thicknesses in voxels, whole numbers, of the places of a box.
 struct LocalThickness {
   Box3i box;  ///< All voxels lie in it.
-  /// Of place (x, y, z): squares[x - box.lo.x + nx (y - box.lo.y + ny (z - box.lo.z))]; 0 if it is
-  /// empty.
+  /// Place box.lo + (x, y, z) has squares[x + nx (y + ny z)], where nx and ny are the box's sizes;
+  /// an empty place has 0.
   CountedVector<std::uint32_t> squares;
 };
 

@@ -25,7 +25,7 @@ struct PlacedModel {
   Vec3i offset{};
 };
 
-/// What else an edit does with attributes.
+/// Choices about the attributes of an edited DAG.
 struct EditedValues {
   NewValues new_values{};
   CoarsenBounds bounds{};  ///< Within these, values may change when they are encoded again.

@@ -10,7 +10,7 @@
 
 namespace voxdag {
 
-/// What minizip writes to. Exceptions must not pass through it.
+/// The output of minizip. Exceptions must not pass through minizip.
 struct ZipOutput {
   AtomicFile file;
   std::uint64_t at = 0;

@@ -69,7 +69,7 @@ VOXDAG_HD inline bool find_number(const ColoredDagView& colored, Vec3i cell, int
          find_cell_number(colored.dag, colored.attributes.index, cell, level, number);
 }
 
-/// Where the values of a cell are: a number, and what the overlay says.
+/// The place of a value of a cell: a number in the stored values, or a value of the overlay.
 struct CellValue {
   std::uint64_t number = 0;
   bool is_stored = false;                ///< Whether `number` is set.

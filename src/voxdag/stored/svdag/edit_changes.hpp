@@ -18,7 +18,7 @@ inline void note_run(std::vector<EditRun>& runs, std::uint64_t first, std::uint6
     runs.push_back({first, count});
 }
 
-/// What was written, in the order of writing. A run may lie in an earlier one.
+/// The runs that were written, in the order of writing. A run may lie in an earlier one.
 struct EditChanges {
   std::vector<EditRun> words, blocks;
 };

@@ -8,7 +8,7 @@
 
 namespace voxdag {
 
-/// What a format writes.
+/// The kind of polygons that a format stores.
 enum class PolygonFormat : std::uint8_t {
   kVertexColors,  ///< Colours of vertices. Polygons of one plane and colour are merged.
   kVertexLooks,   ///< As kVertexColors; vertices may also have normals and materials.

@@ -13,7 +13,7 @@ struct FacePolygon {
   Value8 color{};                                       ///< sRGB encoded.
   std::vector<Vec3d> corners;                           ///< In voxel coordinates.
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Counter-clockwise from outside.
-  // Of manifolds only:
+  // Only manifolds set these:
   Vec3i voxel;                     ///< The voxel of the face.
   std::vector<std::uint8_t> uses;  ///< The number of faces that have each corner.
 };
