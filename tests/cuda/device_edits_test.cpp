@@ -27,7 +27,7 @@ TEST_F(CudaEdits, HitsOfEachVersionEqualTheCpu) {
   const Svdag base = brute_svdag(levels, random_voxels(levels, 3000, 1));
   Grid grid;
   grid.levels = levels;
-  EditableDag dag(base.view(), {.history = 3});
+  EditableDag dag(base.view(), {.history = 3, .tracks_changes = true});
   DeviceScene scene(device_, dag.snapshot().view(), dag.nodes().words_end(),
                     dag.nodes().blocks_end());
   dag.take_changes();
@@ -60,7 +60,7 @@ TEST_F(CudaEdits, PaintedColorsReachTheDevice) {
   const NumberColors colors(base.view(), base.levels);
   const Grid grid = picture_grid();
   const double side = grid.side();
-  EditableDag dag(colors.view());
+  EditableDag dag(colors.view(), {.tracks_changes = true});
   DeviceScene scene(device_, dag.snapshot().view(), dag.nodes().words_end(),
                     dag.nodes().blocks_end());
   DeviceAttributes attributes(scene, colors.view().attributes);

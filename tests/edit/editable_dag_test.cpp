@@ -241,6 +241,19 @@ TEST(EditableDag, StaysBoundedWithALimitedHistory) {
   EXPECT_EQ(dag.snapshot().svdag(), after);
 }
 
+TEST(EditableDag, UsesFreedMemoryInParts) {
+  const Svdag base = brute_svdag(7, random_voxels(7, 10, 1));
+  EditableDag dag(base.view(), {.history = 1}), other(base.view());
+  RandomEdits random(7, 1);
+  for (int i = 0; i < 300; ++i) {
+    const EditShape shape = random.shape();
+    const bool adds = random.below(2) == 0;
+    for (EditableDag* of : {&dag, &other}) adds ? of->add(shape) : of->remove(shape);
+    if (i % 3 == 0) dag.collect();
+    ASSERT_EQ(dag.snapshot().svdag(), other.snapshot().svdag()) << i;
+  }
+}
+
 TEST(EditableDag, KeepsSnapshotsWhileOthersEdit) {
   const Svdag base = brute_svdag(6, random_voxels(6, 5000, 1));
   const NumberColors colors(base.view(), 6);
@@ -285,7 +298,7 @@ TEST(EditableDag, KeepsAMemoryLimitAndChangesNothingThen) {
 
 TEST(EditableDag, TellsWhatWasWritten) {
   const Svdag base = brute_svdag(6, random_voxels(6, 3000, 1));
-  EditableDag dag(base.view(), {.history = 1});
+  EditableDag dag(base.view(), {.history = 1, .tracks_changes = true});
   std::vector<std::uint32_t> words = base.nodes;
   std::vector<std::uint64_t> blocks = base.leaf_blocks;
   RandomEdits random(6, 2);

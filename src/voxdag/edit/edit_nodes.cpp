@@ -1,7 +1,6 @@
 #include "voxdag/edit/edit_nodes.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cstring>
 
@@ -14,10 +13,8 @@ namespace {
 /// Memory is counted in the steps in which it becomes resident.
 constexpr std::uint64_t kStep = kHugePage;
 constexpr std::uint64_t kMaxBlocks = 0xFFFFFFFFull;
-/// A writer takes runs of so many words and blocks.
+/// The sizes of the runs of words and blocks that a writer takes.
 constexpr std::uint32_t kRunWords = 1024, kRunBlocks = 512;
-/// The base is hashed in parts of about this many words.
-constexpr std::uint64_t kPartWords = 1 << 16;
 
 std::uint64_t rounded_up(std::uint64_t bytes) { return (bytes + kStep - 1) / kStep * kStep; }
 
@@ -29,54 +26,6 @@ void copy_in_parts(const T* from, std::uint64_t count, T* to) {
     std::memcpy(to + first, from + first, std::min(kPart, count - first) * sizeof(T));
   });
 }
-
-std::uint64_t hash_block(std::uint64_t voxels) {
-  const std::uint32_t words[] = {static_cast<std::uint32_t>(voxels),
-                                 static_cast<std::uint32_t>(voxels >> 32)};
-  return hash_words(words, 2);
-}
-
-int words_of(const std::uint32_t* node) { return 1 + popcount(child_mask(node)); }
-
-/// Adds a number to a table that other threads fill, too.
-void add_shared(const NumberSlots& table, std::uint64_t hash, std::uint32_t number) {
-  const std::uint32_t tag = NumberSlots::tag_of(hash);
-  const std::uint64_t slot = NumberSlots::slot_of(tag, number);
-  for (std::uint64_t i = table.first_of(tag);; i = table.next(i)) {
-    std::uint64_t free = 0;
-    if (std::atomic_ref(table.slots[i])
-            .compare_exchange_strong(free, slot, std::memory_order_relaxed))
-      return;
-  }
-}
-
-/// Calls hash_of(i) for all i in [0, count), and adds numbers and hashes to a table. Slots are
-/// loaded some items ahead, because each is a cache miss.
-class SlotFiller {
- public:
-  explicit SlotFiller(const NumberSlots& table) : table_(table) {}
-  void add(std::uint64_t hash, std::uint32_t number) {
-    Waiting& place = waiting_[next_ % kAhead];
-    if (next_ >= kAhead) add_shared(table_, place.hash, place.number);
-    place = {hash, number};
-    ++next_;
-    __builtin_prefetch(table_.slots + table_.first_of(NumberSlots::tag_of(hash)), 1);
-  }
-  void finish() {
-    for (std::uint64_t i = next_ - std::min<std::uint64_t>(next_, kAhead); i < next_; ++i)
-      add_shared(table_, waiting_[i % kAhead].hash, waiting_[i % kAhead].number);
-  }
-
- private:
-  static constexpr std::uint64_t kAhead = 16;
-  struct Waiting {
-    std::uint64_t hash = 0;
-    std::uint32_t number = 0;
-  };
-  NumberSlots table_;
-  std::array<Waiting, kAhead> waiting_{};
-  std::uint64_t next_ = 0;
-};
 
 /// Shortens a run to end at `end`, if it reaches beyond.
 void trim_run(EditRun& run, std::uint64_t end) {
@@ -102,55 +51,8 @@ EditNodes::EditNodes(const SvdagView& base, Work work) : work_(work) {
   full_.fill(kNone);
   for (int level = 0; level <= base.levels - 2; ++level) {
     tables_.push_back(std::make_unique<SharedNumberTable>(work.memory));
-    hash_base(level);
+    base_numbers_.emplace_back(base_, level, work);
   }
-}
-
-EditNodes::~EditNodes() {
-  if (work_.memory == nullptr) return;
-  for (const auto& slots : base_slots_) work_.memory->release(slots.bytes());
-}
-
-void EditNodes::hash_base(int level) {
-  // Finds the nodes where parts begin, and counts nodes.
-  std::vector<std::uint64_t> parts;
-  std::uint64_t nodes = 0;
-  const bool is_leaf = level == levels() - 2;
-  const std::uint64_t begin = is_leaf ? 0 : base_.level_begin[level],
-                      end = is_leaf ? base_.leaf_block_count : base_.level_begin[level + 1];
-  if (is_leaf) {
-    nodes = end;
-    for (std::uint64_t at = 0; at < end; at += kPartWords) parts.push_back(at);
-  } else {
-    std::uint64_t next = begin;
-    for (std::uint64_t at = begin; at < end; ++nodes) {
-      if (at >= next) {
-        parts.push_back(at);
-        next = at + kPartWords;
-      }
-      at += static_cast<std::uint64_t>(words_of(base_.nodes + at));
-    }
-  }
-  parts.push_back(end);
-  const std::size_t slots = nodes + nodes / 2 + 1;
-  if (work_.memory != nullptr) work_.memory->reserve((slots * 8 + 4095) / 4096 * 4096);
-  base_slots_.push_back(PageVector<std::uint64_t>::zeros(slots));
-  const NumberSlots table{base_slots_.back().data(), slots};
-  parallel_for(parts.size() - 1, [&](std::size_t part) {
-    work_.poll();
-    SlotFiller filler(table);
-    for (std::uint64_t at = parts[part]; at < parts[part + 1];) {
-      const auto number = static_cast<std::uint32_t>(at);
-      if (is_leaf) {
-        filler.add(hash_block(base_.leaf_blocks[at++]), number);
-      } else {
-        const int count = words_of(base_.nodes + at);
-        filler.add(hash_words(base_.nodes + at, count), number);
-        at += static_cast<std::uint64_t>(count);
-      }
-    }
-    filler.finish();
-  });
 }
 
 SvdagView EditNodes::view(std::uint32_t root) const {
@@ -191,22 +93,19 @@ EditNodes::Writer::Pending EditNodes::Writer::block_of(std::uint64_t voxels) {
 }
 
 void EditNodes::Writer::prefetch(int level, const Pending& node) const {
-  const auto& slots = nodes_.base_slots_[static_cast<std::size_t>(level)];
-  const NumberSlots base{const_cast<std::uint64_t*>(slots.data()), slots.size()};
-  __builtin_prefetch(base.slots + base.first_of(NumberSlots::tag_of(node.hash)));
+  nodes_.base_numbers_[static_cast<std::size_t>(level)].prefetch(node.hash);
   nodes_.tables_[static_cast<std::size_t>(level)]->prefetch(node.hash);
 }
 
 void EditNodes::Writer::prefetch_found(int level, const Pending& node) const {
-  const auto& slots = nodes_.base_slots_[static_cast<std::size_t>(level)];
-  std::uint64_t found = 0;
-  NumberSlots{const_cast<std::uint64_t*>(slots.data()), slots.size()}.find(
-      NumberSlots::tag_of(node.hash), [](std::uint32_t) { return true; }, found);
-  std::uint32_t number = NumberSlots::number_of(found);
-  if (found == 0 && !nodes_.tables_[static_cast<std::size_t>(level)]->find_tag(node.hash, number))
+  const auto l = static_cast<std::size_t>(level);
+  std::uint32_t number = 0;
+  if (!nodes_.base_numbers_[l].find(
+          node.hash, [](std::uint32_t) { return true; }, number) &&
+      !nodes_.tables_[l]->find_tag(node.hash, number))
     return;
   if (level == nodes_.levels() - 2)
-    __builtin_prefetch(nodes_.blocks_.data() + number);
+    __builtin_prefetch(nodes_.address(number));
   else
     __builtin_prefetch(nodes_.words(number));
 }
@@ -222,10 +121,9 @@ std::uint32_t EditNodes::Writer::intern(int level, const Pending& node) {
     return stored[0] == node.words[0] &&
            std::equal(node.words + 1, node.words + node.count, stored + 1);
   };
-  PageVector<std::uint64_t>& slots = nodes_.base_slots_[static_cast<std::size_t>(level)];
-  std::uint64_t found = 0;
-  NumberSlots{slots.data(), slots.size()}.find(NumberSlots::tag_of(node.hash), is_equal, found);
-  if (found != 0) return NumberSlots::number_of(found);
+  std::uint32_t found = 0;
+  if (nodes_.base_numbers_[static_cast<std::size_t>(level)].find(node.hash, is_equal, found))
+    return found;
   SharedNumberTable& table = *nodes_.tables_[static_cast<std::size_t>(level)];
   if (is_leaf)
     return table.find_or_add(
@@ -264,25 +162,45 @@ void EditNodes::FreeRuns::add(Run run) {
   count += run.end - run.next;
 }
 
-EditNodes::Run EditNodes::FreeRuns::take(std::uint32_t least, std::uint32_t most) {
+EditNodes::Run EditNodes::FreeRuns::take(std::uint32_t least) {
   for (std::size_t size = least; size < lists.size(); ++size) {
     if (lists[size].empty()) continue;
-    Run run = lists[size].back();
+    const Run run = lists[size].back();
     lists[size].pop_back();
     count -= run.end - run.next;
-    if (run.end - run.next > most) {
-      add({run.next + most, run.end});
-      run.end = run.next + most;
-    }
     return run;
   }
   return {};
 }
 
+EditNodes::Run EditNodes::reuse_words(std::uint32_t least, std::uint32_t most) {
+  Run run = free_words_.take(least);
+  if (run.end - run.next > most) {
+    free_words({run.next + most, run.end});
+    run.end = run.next + most;
+  }
+  return run;
+}
+
+EditNodes::Run EditNodes::reuse_blocks(std::uint32_t most) {
+  Run run = free_blocks_.take(1);
+  if (run.end - run.next > most) {
+    free_blocks_.add({run.next + most, run.end});
+    run.end = run.next + most;
+  }
+  return run;
+}
+
+void EditNodes::free_words(Run run) {
+  if (run.next == run.end) return;
+  words_[run.next] = kUnused + (run.end - run.next);
+  free_words_.add(run);
+}
+
 void EditNodes::take_words(Run& run, std::uint32_t count) {
   give_back_words(run);
   const std::lock_guard guard(mutex_);
-  run = free_words_.take(count, kRunWords);
+  run = reuse_words(count, kRunWords);
   if (run.next == run.end) {
     if (words_end_ + kRunWords > kMaxPlainWords)
       throw Error(
@@ -292,12 +210,12 @@ void EditNodes::take_words(Run& run, std::uint32_t count) {
     run = {begin, begin + kRunWords};
     words_end_ += kRunWords;
   }
-  note_run(changes_.words, run.next, run.end - run.next);
+  if (tracks_changes_) note_run(changes_.words, run.next, run.end - run.next);
 }
 
 void EditNodes::take_blocks(Run& run) {
   const std::lock_guard guard(mutex_);
-  run = free_blocks_.take(1, kRunBlocks);
+  run = reuse_blocks(kRunBlocks);
   if (run.next == run.end) {
     if (blocks_end_ + kRunBlocks > kMaxBlocks)
       throw Error("the DAG is too large: it has more leaf blocks than 32-bit pointers can address");
@@ -306,7 +224,7 @@ void EditNodes::take_blocks(Run& run) {
     run = {begin, begin + kRunBlocks};
     blocks_end_ += kRunBlocks;
   }
-  note_run(changes_.blocks, run.next, run.end - run.next);
+  if (tracks_changes_) note_run(changes_.blocks, run.next, run.end - run.next);
 }
 
 void EditNodes::give_back_words(Run& run) {
@@ -316,8 +234,7 @@ void EditNodes::give_back_words(Run& run) {
     words_end_ = run.next;
     if (!changes_.words.empty()) trim_run(changes_.words.back(), words_end_);
   } else {
-    words_[run.next] = kUnused + (run.end - run.next);
-    free_words_.add(run);
+    free_words(run);
   }
   run = {};
 }
@@ -358,7 +275,7 @@ void EditNodes::mark(int level, std::uint32_t node) {
   if (bit) return;
   (is_leaf ? block_marks_ : word_marks_)[node - base] = true;
   if (is_leaf) return;
-  for (int i = 1; i < words_of(words(node)); ++i) mark(level + 1, words(node)[i]);
+  for (int i = 1; i < words_of_node(words(node)); ++i) mark(level + 1, words(node)[i]);
 }
 
 bool EditNodes::is_marked(int level, std::uint32_t node) const {
@@ -384,19 +301,19 @@ void EditNodes::collect(std::span<const std::uint32_t> roots) {
   for (std::uint64_t at = first_word; at <= words_end_;) {
     const bool is_end = at == words_end_;
     if (is_end || word_marks_[at - first_word]) {
-      if (unused.next != unused.end) words_[unused.next] = kUnused + (unused.end - unused.next);
-      free_words_.add(unused);
+      free_words(unused);
       unused = {};
     }
     if (is_end) break;
     const std::uint32_t first = words_[at];
     const std::uint32_t count =
-        first > kUnused ? first - kUnused : static_cast<std::uint32_t>(words_of(&first));
+        first > kUnused ? first - kUnused : static_cast<std::uint32_t>(words_of_node(&first));
     if (!word_marks_[at - first_word]) {
       if (unused.next == unused.end) unused.next = static_cast<std::uint32_t>(at);
       unused.end = static_cast<std::uint32_t>(at) + count;
     }
     at += count;
+    assert(at <= words_end_);
   }
   free_blocks_ = {};
   unused = {};

@@ -21,6 +21,7 @@
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/shared_number_table.hpp"
+#include "voxdag/edit/base_numbers.hpp"
 #include "voxdag/stored/svdag/edit_changes.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
@@ -35,7 +36,6 @@ class EditNodes {
   EditNodes(const SvdagView& base, Work work);
   EditNodes(const EditNodes&) = delete;
   EditNodes& operator=(const EditNodes&) = delete;
-  ~EditNodes();
 
   int levels() const { return base_.levels; }
   /// Returns the root of the base; kNone if it has no voxels.
@@ -78,7 +78,9 @@ class EditNodes {
   /// OverMemory, and then frees none.
   void collect(std::span<const std::uint32_t> roots);
 
-  /// Returns what was written behind the base since the last call.
+  /// Makes this object note what is written from now on.
+  void track_changes() { tracks_changes_ = true; }
+  /// Returns what was written behind the base since the last call; nothing without track_changes().
   EditChanges take_changes() { return std::exchange(changes_, {}); }
 
  private:
@@ -94,14 +96,18 @@ class EditNodes {
     std::uint64_t count = 0;  ///< Words or blocks.
 
     void add(Run run);
-    /// Takes a run of `least` to `most` words, or one of none.
-    Run take(std::uint32_t least, std::uint32_t most);
+    /// Takes a run of at least `least` words or blocks, or one of none.
+    Run take(std::uint32_t least);
   };
 
-  void hash_base(int level);
   /// Gives a writer a run of at least `count` words, or of at least one block.
   void take_words(Run& run, std::uint32_t count);
   void take_blocks(Run& run);
+  /// Takes the first unused run of at least `least` words or blocks, and at most `most` of it.
+  Run reuse_words(std::uint32_t least, std::uint32_t most);
+  Run reuse_blocks(std::uint32_t most);
+  /// Writes the length of an unused run of words into it, and adds it to the list.
+  void free_words(Run run);
   /// Takes back what is left of a run.
   void give_back_words(Run& run);
   void give_back_blocks(Run& run);
@@ -119,8 +125,9 @@ class EditNodes {
   std::uint64_t words_end_ = 0, blocks_end_ = 0;
   FreeRuns free_words_, free_blocks_;
   EditChanges changes_;
-  /// The slots of the base's nodes, and a table of the others, for each level.
-  std::vector<PageVector<std::uint64_t>> base_slots_;
+  bool tracks_changes_ = false;
+  /// The base's nodes, and the others, of each level.
+  std::vector<BaseNumbers> base_numbers_;
   std::vector<std::unique_ptr<SharedNumberTable>> tables_;
   std::uint64_t collected_nodes_ = 0;
   std::array<std::uint32_t, kMaxLevels> full_;

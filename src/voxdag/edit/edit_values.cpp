@@ -31,7 +31,7 @@ std::uint32_t EditValues::add(const std::uint32_t (&children)[8]) {
     ++end_;
   }
   std::copy_n(children, 8, words_.data() + std::uint64_t{8} * at);
-  note_run(changes_, std::uint64_t{8} * at, 8);
+  if (tracks_changes_) note_run(changes_, std::uint64_t{8} * at, 8);
   return at;
 }
 

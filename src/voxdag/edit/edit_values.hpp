@@ -33,7 +33,9 @@ class EditValues {
   std::uint64_t unused_bytes() const { return 32 * free_.size(); }
   /// Frees the places of all words that none of these roots reaches.
   void collect(std::span<const std::uint32_t> roots);
-  /// Returns the words that were written since the last call.
+  /// Makes this object note what is written from now on.
+  void track_changes() { tracks_changes_ = true; }
+  /// Returns the words that were written since the last call; none without track_changes().
   std::vector<EditRun> take_changes() { return std::exchange(changes_, {}); }
 
  private:
@@ -46,6 +48,7 @@ class EditValues {
   std::vector<std::uint32_t> free_;
   std::vector<bool> marks_;
   std::vector<EditRun> changes_;
+  bool tracks_changes_ = false;
 };
 
 }  // namespace voxdag

@@ -93,6 +93,7 @@ EditableDag::EditableDag(const ColoredDagView& base, EditOptions options, Work w
       nodes_(std::make_shared<EditNodes>(base.dag, work)),
       values_(std::make_shared<EditValues>(work)),
       collect_at_(kCollectAtLeast) {
+  if (options.tracks_changes) nodes_->track_changes(), values_->track_changes();
   Version version;
   version.root = nodes_->base_root();
   push(std::move(version));

@@ -34,6 +34,8 @@ struct EditPaint {
 struct EditOptions {
   /// The number of edits that undo() can take back; 0: all.
   std::size_t history = 0;
+  /// Notes what edits write, for take_changes(). Needs memory until it is taken.
+  bool tracks_changes = false;
 };
 
 /// How a stamp changes voxels.
@@ -118,7 +120,8 @@ class EditableDag {
   /// Frees the memory of nodes and values that no version and no snapshot uses, for later edits.
   /// Edits call it when versions were dropped and memory has doubled since, or when it runs out.
   void collect();
-  /// Returns what was written since the last call, for copies of the arrays elsewhere.
+  /// Returns what was written since the last call, for copies of the arrays elsewhere. Nothing
+  /// without EditOptions::tracks_changes.
   EditChanges take_changes() { return nodes_->take_changes(); }
   std::vector<EditRun> take_value_changes() { return values_->take_changes(); }
 
