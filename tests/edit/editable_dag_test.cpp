@@ -241,6 +241,23 @@ TEST(EditableDag, StaysBoundedWithALimitedHistory) {
   EXPECT_EQ(dag.snapshot().svdag(), after);
 }
 
+TEST(EditableDag, MakesMinimalDagsOfBasesThatAreNot) {
+  const std::vector<Vec3i> voxels = random_voxels(4, 300, 1);
+  const Svdag minimal = brute_svdag(4, voxels);
+  // The last pointer of the nodes of level 1 points to a second copy of its leaf block.
+  Svdag base = minimal;
+  base.leaf_blocks.push_back(base.leaf_blocks[base.nodes.back()]);
+  base.nodes.back() = static_cast<std::uint32_t>(base.leaf_blocks.size() - 1);
+  ASSERT_FALSE(EditNodes(base.view(), {}).is_minimal());
+  ASSERT_TRUE(EditNodes(minimal.view(), {}).is_minimal());
+  EditableDag dag(base.view());
+  EditModel model(4, voxels);
+  EXPECT_EQ(dag.snapshot().svdag(), minimal);
+  RandomEdits random(4, 1);
+  edit_both(random, dag, model, false);
+  EXPECT_EQ(dag.snapshot().svdag(), model.dag());
+}
+
 TEST(EditableDag, UsesFreedMemoryInParts) {
   const Svdag base = brute_svdag(7, random_voxels(7, 10, 1));
   EditableDag dag(base.view(), {.history = 1}), other(base.view());

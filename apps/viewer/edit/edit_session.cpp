@@ -45,7 +45,10 @@ fs::path save_path(const fs::path& folder, std::string_view name) {
 
 EditSession::EditSession(const ColoredDagView& scene, const Grid& grid, fs::path file, Save save,
                          Work work)
-    : grid_(grid), file_(std::move(file)), save_(std::move(save)), dag_(scene, {.tracks_changes = true}, work) {}
+    : grid_(grid),
+      file_(std::move(file)),
+      save_(std::move(save)),
+      dag_(scene, {.tracks_changes = true}, work) {}
 
 void EditSession::check_writer(std::uint32_t writer) const {
   if (writer != writer_ || writer == 0) throw NotTheWriter();

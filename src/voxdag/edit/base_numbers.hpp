@@ -26,6 +26,8 @@ class BaseNumbers {
   /// as long as this object lives. Throws OverMemory, Cancelled and std::bad_alloc.
   BaseNumbers(const SvdagView& dag, int level, Work work);
 
+  /// Returns whether no two nodes of the level are equal.
+  bool is_minimal() const { return is_minimal_; }
   /// Returns whether there is a node with this hash for which is_equal(number) is true, and its
   /// number.
   template <class IsEqual>
@@ -44,6 +46,7 @@ class BaseNumbers {
   /// Nothing writes to the slots after the constructor.
   NumberSlots table() const { return {const_cast<std::uint64_t*>(slots_.data()), slots_.size()}; }
 
+  bool is_minimal_ = true;
   MemoryReservation memory_;
   PageVector<std::uint64_t> slots_;
 };

@@ -55,6 +55,11 @@ EditNodes::EditNodes(const SvdagView& base, Work work) : work_(work) {
   }
 }
 
+bool EditNodes::is_minimal() const {
+  return std::all_of(base_numbers_.begin(), base_numbers_.end(),
+                     [](const BaseNumbers& numbers) { return numbers.is_minimal(); });
+}
+
 SvdagView EditNodes::view(std::uint32_t root) const {
   SvdagView view = base_;
   view.root = root == kNone ? 0 : root;

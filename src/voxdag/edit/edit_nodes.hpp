@@ -42,6 +42,8 @@ class EditNodes {
   std::uint32_t base_root() const { return base_.is_empty() ? kNone : 0; }
   /// Returns the base in this object's arrays.
   const SvdagView& base() const { return base_; }
+  /// Returns whether no level of the base has two equal nodes.
+  bool is_minimal() const;
   /// Returns the DAG with this root. Only functions that walk from the root may take it.
   SvdagView view(std::uint32_t root) const;
 

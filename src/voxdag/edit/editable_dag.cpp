@@ -10,6 +10,7 @@
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/shift.hpp"
+#include "voxdag/edit/canonical_copy.hpp"
 #include "voxdag/edit/edited_source.hpp"
 #include "voxdag/edit/filter_ball.hpp"
 #include "voxdag/edit/shape_edit.hpp"
@@ -76,7 +77,10 @@ Vec3d middle_of_cell(Vec3i cell, int level, int levels) {
 
 }  // namespace
 
-Svdag EditSnapshot::svdag(Work work) const { return crop(view(), whole_grid(view().levels), work); }
+Svdag EditSnapshot::svdag(Work work) const {
+  if (version_->nodes->is_minimal()) return canonical_copy(view(), version_->words_end, work);
+  return crop(view(), whole_grid(view().levels), work);
+}
 
 DagAttributes EditSnapshot::attributes(const SvdagView& dag, const CoarsenBounds& bounds,
                                        Work work) const {
@@ -318,6 +322,7 @@ void EditableDag::push(Version version) {
   version.nodes = nodes_;
   version.of_values = values_;
   version.view = nodes_->view(version.root);
+  version.words_end = nodes_->words_end();
   version.values = {nodes_->base(),
                     attributes_,
                     {values_->view(version.colors), values_->view(version.normals),

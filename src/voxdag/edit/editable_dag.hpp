@@ -71,7 +71,8 @@ class EditSnapshot {
     std::uint32_t root = EditNodes::kNone;
     std::uint32_t colors = kStoredValue, normals = kStoredValue, materials = kStoredValue;
     SvdagView view;
-    ColoredDagView values;  ///< Of the base, with overlays.
+    std::uint64_t words_end = 0;  ///< The words of `view` lie before.
+    ColoredDagView values;        ///< Of the base, with overlays.
   };
   explicit EditSnapshot(std::shared_ptr<const Version> version) : version_(std::move(version)) {}
 
