@@ -39,6 +39,8 @@ void add_bench_edits_command(const Command& bench, Session& session) {
                "Radii of single balls, in voxels (default: 4,16,47,150,443,1000,2300)");
   command.number("--repeat", plan.repeats, NumberRange::whole(1, 10000), "N",
                  "Number of balls of each radius");
+  command.number("--session", plan.session, NumberRange::whole(0, 10000000), "N",
+                 "Number of edits of a long session, of which the last 1,000 can be undone");
   command.text("-o,--output", arguments->output.json_file, "FILE.json",
                "Also write the JSON to a file");
   add_run_options(command, session);

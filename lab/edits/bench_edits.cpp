@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "voxdag/algebra/combine.hpp"
 #include "voxdag/edit/editable_dag.hpp"
@@ -27,10 +28,11 @@ double milliseconds_of(const auto& body) {
 /// One editable scene, and what its edits cost.
 class Editor {
  public:
-  Editor(const DagModel& model, MemoryBudget& memory, Progress& progress)
+  Editor(const DagModel& model, std::size_t history, MemoryBudget& memory, Progress& progress)
       : progress_(progress),
         has_colors_(model.attributes().has_colors()),
-        dag_(ColoredDagView{model.view(), model.attributes()}, {}, {&memory, &progress}) {}
+        dag_(ColoredDagView{model.view(), model.attributes()}, {.history = history},
+             {&memory, &progress}) {}
 
   EditableDag& dag() { return dag_; }
 
@@ -67,13 +69,32 @@ class Editor {
     return times;
   }
 
- private:
+  /// Returns the bytes of nodes and values that edits have taken.
   std::uint64_t bytes_now() const { return dag_.nodes().added_bytes() + dag_.values().bytes(); }
 
+ private:
   Progress& progress_;
   bool has_colors_;
   EditableDag dag_;
 };
+
+LongSession run_session(const DagModel& model, std::uint32_t edits, Progress& progress) {
+  LongSession session;
+  session.times.name = fmt::format("{} edits", edits);
+  MemoryBudget memory;
+  Editor editor(model, LongSession::kHistory, memory, progress);
+  ReplayPlaces places(model.view());
+  std::mt19937 random(1);
+  for (std::uint32_t i = 0; i < edits; ++i) {
+    editor.edit(places, {4 + static_cast<double>(random() % 44), random() % 2 == 0}, session.times);
+    session.most_bytes = std::max(session.most_bytes, editor.bytes_now());
+    if (i < edits / 10) session.early_bytes = session.most_bytes;
+    progress.report("session", static_cast<double>(i + 1) / edits, i + 1);
+  }
+  std::sort(session.times.milliseconds.begin(), session.times.milliseconds.end());
+  std::sort(session.times.undo_milliseconds.begin(), session.times.undo_milliseconds.end());
+  return session;
+}
 
 std::vector<ReplayBall> read_replay(const std::string& path) {
   std::ifstream file(path);
@@ -103,7 +124,7 @@ EditsRun run_scene(const std::string& scene, const EditsPlan& plan,
     run.base_nodes += count;
   MemoryBudget memory;
   std::optional<Editor> editor;
-  run.open_seconds = milliseconds_of([&] { editor.emplace(*model, memory, progress); }) / 1000;
+  run.open_seconds = milliseconds_of([&] { editor.emplace(*model, 0, memory, progress); }) / 1000;
   run.memory_bytes = memory.used();
   for (std::size_t i = 0; i < replays.size(); ++i)
     run.times.push_back(editor->measure(std::filesystem::path(plan.replays[i]).filename(),
@@ -130,6 +151,8 @@ EditsRun run_scene(const std::string& scene, const EditsPlan& plan,
                        snapshot.attributes(dag.view(), {}, {&progress});
                      }) /
                      1000;
+  editor.reset();
+  if (plan.session > 0) run.session = run_session(*model, plan.session, progress);
   if (plan.rewrites) {
     Svdag nothing;
     nothing.levels = run.levels;
@@ -163,21 +186,24 @@ std::vector<EditsRun> bench_edits(const EditsPlan& plan, Progress& progress) {
 nlohmann::ordered_json edits_json(const std::vector<EditsRun>& runs,
                                   const nlohmann::ordered_json& machine) {
   nlohmann::ordered_json json{{"machine", machine}, {"runs", nlohmann::ordered_json::array()}};
+  const auto times_json = [](const EditTimes& times) {
+    return nlohmann::ordered_json{
+        {"name", times.name},
+        {"edits", times.milliseconds.size()},
+        {"least_radius", times.least_radius},
+        {"most_radius", times.most_radius},
+        {"median_ms", times.quantile(0.5)},
+        {"p95_ms", times.quantile(0.95)},
+        {"most_ms", times.quantile(1)},
+        {"most_undo_ms", times.undo_milliseconds.empty() ? 0.0 : times.undo_milliseconds.back()}};
+  };
   for (const EditsRun& run : runs) {
     nlohmann::ordered_json edits = nlohmann::ordered_json::array();
     for (const EditTimes& times : run.times) {
       const auto count = static_cast<double>(times.milliseconds.size());
-      edits.push_back(
-          {{"name", times.name},
-           {"edits", times.milliseconds.size()},
-           {"least_radius", times.least_radius},
-           {"most_radius", times.most_radius},
-           {"median_ms", times.quantile(0.5)},
-           {"p95_ms", times.quantile(0.95)},
-           {"most_ms", times.quantile(1)},
-           {"most_undo_ms", times.undo_milliseconds.empty() ? 0.0 : times.undo_milliseconds.back()},
-           {"new_nodes_per_edit", static_cast<double>(times.new_nodes) / count},
-           {"new_bytes_per_edit", static_cast<double>(times.new_bytes) / count}});
+      nlohmann::ordered_json& row = edits.emplace_back(times_json(times));
+      row["new_nodes_per_edit"] = static_cast<double>(times.new_nodes) / count;
+      row["new_bytes_per_edit"] = static_cast<double>(times.new_bytes) / count;
     }
     json["runs"].push_back({{"scene", run.scene},
                             {"levels", run.levels},
@@ -190,6 +216,12 @@ nlohmann::ordered_json edits_json(const std::vector<EditsRun>& runs,
                             {"save_seconds", run.save_seconds},
                             {"rewrite_ms", run.rewrite_milliseconds},
                             {"edits", std::move(edits)}});
+    if (run.session.times.milliseconds.empty()) continue;
+    nlohmann::ordered_json session = times_json(run.session.times);
+    session["history"] = LongSession::kHistory;
+    session["early_bytes"] = run.session.early_bytes;
+    session["most_bytes"] = run.session.most_bytes;
+    json["runs"].back()["session"] = std::move(session);
   }
   return json;
 }
@@ -219,6 +251,13 @@ std::string edits_table(const std::vector<EditsRun>& runs) {
           static_cast<double>(times.new_nodes) / count,
           static_cast<double>(times.new_bytes) / count);
     }
+    if (const LongSession& session = run.session; !session.times.milliseconds.empty())
+      text += fmt::format(
+          "{} edits of 4 to 47 voxels' radius, undo for the last {}: median {:.3f} ms, most {:.3f} "
+          "ms; at most {:.0f} MiB of edits, {:.0f} in the first tenth\n",
+          session.times.milliseconds.size(), LongSession::kHistory, session.times.quantile(0.5),
+          session.times.quantile(1), static_cast<double>(session.most_bytes) / 1048576.0,
+          static_cast<double>(session.early_bytes) / 1048576.0);
     if (run.rewrite_milliseconds > 0)
       text += fmt::format("Taking a ball of 20 voxels out by `voxdag combine`: {:.0f} ms\n",
                           run.rewrite_milliseconds);

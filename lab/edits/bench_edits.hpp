@@ -15,6 +15,7 @@ struct EditsPlan {
   std::vector<std::string> replays;  ///< Recorded sessions (edit/replay.hpp).
   std::vector<double> radii;         ///< Of single balls, in voxels.
   int repeats = 9;                   ///< Balls of each radius.
+  std::uint32_t session = 100000;    ///< Edits of a long session; 0: none.
   bool rewrites = true;              ///< Also measures algebra/combine.hpp on the whole DAG.
 };
 
@@ -29,6 +30,15 @@ struct EditTimes {
   double quantile(double part) const;
 };
 
+/// A long session of balls of 4 to 47 voxels' radius, of which the last 1,000 can be undone.
+struct LongSession {
+  static constexpr std::size_t kHistory = 1000;
+
+  EditTimes times;
+  std::uint64_t most_bytes = 0;   ///< Of nodes and values behind the base, unused ones included.
+  std::uint64_t early_bytes = 0;  ///< The same, of the first tenth of the edits.
+};
+
 struct EditsRun {
   std::string scene;
   int levels = 0;
@@ -37,6 +47,7 @@ struct EditsRun {
   double read_seconds = 0, open_seconds = 0, save_seconds = 0;
   double rewrite_milliseconds = 0;  ///< Takes a ball of 20 voxels out by rewriting the DAG.
   std::vector<EditTimes> times;
+  LongSession session;  ///< Without times if the plan has none.
 };
 
 /// Measures the plan on the current TBB arena. Replays edit one after the other, each from the

@@ -78,17 +78,24 @@ describeInBrowsers('editing', (name, browser) => {
     for (const key of keys) await page.keyboard.down(key);
     for (const key of keys.reverse()) await page.keyboard.up(key);
   };
-  /** Returns the picture, as PNG in base64, and the part of its pixels that are red or green. @param {Page} page */
+  /** Returns the picture as PNG in base64. @param {Page} page */
   const picture = (page) => page.evaluate(async () => {
     const blob = await /** @type {any} */ (window).voxdag.viewer.capture({ width: 160, height: 100, samples: 2 });
-    const bytes = new Uint8Array(await blob.arrayBuffer()), canvas = new OffscreenCanvas(160, 100);
-    const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext('2d'));
-    context.drawImage(await createImageBitmap(blob), 0, 0);
-    const { data } = context.getImageData(0, 0, 160, 100), parts = [0, 0];
-    for (let i = 0; i < data.length; i += 4)
-      for (const a of [0, 1]) if (data[i + a] > 60 && data[i + a] > 8 * data[i + 1 - a] && data[i + a] > 8 * data[i + 2]) parts[a] += 1 / 16000;
-    return { png: btoa(String.fromCharCode(...bytes)), red: parts[0], green: parts[1] };
+    return btoa(String.fromCharCode(...new Uint8Array(await blob.arrayBuffer())));
   });
+  const pixels = (/** @type {string} */ png) => readPng(Buffer.from(png, 'base64'));
+  /**
+   * Returns the part of the pixels in which a channel now stands out more from the two others.
+   * @param {string} before @param {string} after @param {number} channel
+   */
+  const tinted = (before, after, channel) => {
+    const [a, b] = [pixels(before), pixels(after)], others = [0, 1, 2].filter((c) => c !== channel);
+    const standsOut = (/** @type {any} */ { data, channels }, /** @type {number} */ i) =>
+      rows[i * channels + channel] - Math.max(...others.map((c) => rows[i * channels + c]));
+    let count = 0;
+    for (let i = 0; i < a.width * a.height; ++i) if (standsOut(b, i) > standsOut(a, i) + 40) ++count;
+    return count / (a.width * a.height);
+  };
   const pick = (/** @type {Page} */ page) => page.evaluate(async () => {
     const { viewer } = /** @type {any} */ (window).voxdag, { clientWidth, clientHeight } = viewer.canvas;
     return viewer.pick(clientWidth / 2, clientHeight / 2);
@@ -102,19 +109,19 @@ describeInBrowsers('editing', (name, browser) => {
     const before = await picture(page), there = await pick(page), rootBefore = await root(page);
     await change(page, () => drag(page, ACROSS));
     const carved = await picture(page), hole = await pick(page);
-    assert.notEqual(carved.png, before.png);
+    assert.notEqual(carved, before);
     assert.ok(hole === null || hole.distance > there.distance, 'the ray goes through what the stroke removed');
     await change(page, () => press(page, 'Control', 'z'));
     assert.equal(await root(page), rootBefore);
-    assert.equal((await picture(page)).png, before.png, 'undone, the picture is the one before');
+    assert.equal(await picture(page), before, 'undone, the picture is the one before');
     await change(page, () => press(page, 'Control', 'Shift', 'Z'));
-    assert.equal((await picture(page)).png, carved.png);
+    assert.equal(await picture(page), carved);
     await change(page, () => press(page, 'Control', 'z'));
 
     await choose(page, ['add'], '#00ff00');
     await change(page, () => drag(page, ACROSS));
     const grown = await picture(page);
-    assert.ok(grown.green > 10 * before.green + 0.001, `the new voxels are green: ${before.green}, ${grown.green}`);
+    assert.ok(tinted(before, grown, 1) > 0.01, `the new voxels are green: ${tinted(before, grown, 1)}`);
     assert.ok((await pick(page)).distance < there.distance);
     await choose(page, ['capsule', 'paint'], '#ff0000');
     const overlay = () => page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.arrival.memory.version.colors);
@@ -123,13 +130,25 @@ describeInBrowsers('editing', (name, browser) => {
     await page.waitForFunction((old) => /** @type {any} */ (window).voxdag.viewer.arrival.memory.version.colors !== old, {}, colors);
     await rest(page);
     const painted = await picture(page);
-    assert.ok(painted.red > 10 * before.red + 0.001, `painted red: ${before.red}, ${painted.red}`);
+    assert.ok(tinted(grown, painted, 0) > 0.01, `painted red: ${tinted(grown, painted, 0)}`);
+    assert.ok(tinted(painted, grown, 0) < 0.001);
+
+    // A measure takes the pointer from the brush, and ends on edited voxels.
+    const edited = [await root(page), await overlay()], size = await page.evaluate(() => [innerWidth, innerHeight]);
+    await page.keyboard.press('m');
+    await page.mouse.click(0.4 * size[0], 0.55 * size[1]);
+    await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent?.startsWith('Click the second point'));
+    await page.mouse.click(0.55 * size[0], 0.55 * size[1]);
+    await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().measures.length === 1);
+    await page.keyboard.press('Escape');
+    assert.deepEqual([await root(page), await overlay()], edited, 'a measure edits nothing');
+    await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.set({ measures: [] }));
 
     // The section cuts the edited scene, for the shader and for the pointer.
     await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.set({ section: { plane: { point: [0.5, 0, 0.5], normal: [0, 0, 1] } } }));
     const cut = await pick(page);
     assert.ok(cut === null || cut.position[2] < 0.5 + 1e-6);
-    assert.notEqual((await picture(page)).png, painted.png);
+    assert.notEqual(await picture(page), painted);
     await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.set({ section: { plane: null } }));
 
     await openPanel(page);
@@ -150,7 +169,7 @@ describeInBrowsers('editing', (name, browser) => {
     const plain = await view(saved), again = await load(plain.url);
     assert.equal(await again.evaluate(() => document.querySelector('[aria-label=Edit]')), null);
     assert.equal(await hits(again), shown);
-    const [a, b] = [painted.png, (await picture(again)).png].map((png) => readPng(Buffer.from(png, 'base64')));
+    const [a, b] = [painted, await picture(again)].map(pixels);
     assert.ok(ssim(a, b) > 0.98, `${ssim(a, b)}`);
     assertNoComplaints(again);
     await again.close();

@@ -2,9 +2,12 @@
 import fs from 'node:fs';
 import zlib from 'node:zlib';
 
-/** @typedef {{width: number, height: number, luma: Float64Array}} Picture brightness of each pixel, 0 to 255 */
+/**
+ * @typedef {{width: number, height: number, luma: Float64Array}} Picture brightness of each pixel, 0 to 255
+ * @typedef {Picture & {channels: number, rows: Uint8Array}} Pixels its bytes, 3 or 4 for each pixel
+ */
 
-/** Reads a PNG of 8 bits, RGB or RGBA. @param {Buffer | string} from bytes or path @returns {Picture} */
+/** Reads a PNG of 8 bits, RGB or RGBA. @param {Buffer | string} from bytes or path @returns {Pixels} */
 export function readPng(from) {
   const bytes = typeof from === 'string' ? fs.readFileSync(from) : from;
   const parts = [];
@@ -32,7 +35,7 @@ export function readPng(from) {
     }
   const luma = new Float64Array(width * height);
   for (let i = 0; i < luma.length; ++i) luma[i] = 0.299 * rows[i * channels] + 0.587 * rows[i * channels + 1] + 0.114 * rows[i * channels + 2];
-  return { width, height, luma };
+  return { width, height, channels, rows, luma };
 }
 
 /**

@@ -17,7 +17,7 @@ TEST(BenchEdits, JsonHasTheTimesOfSessionsAndBalls) {
   ASSERT_EQ(run_voxdag({"build", dir / "m.obj", "-r", "128", "-o", dir / "m.vdag"}).status, 0);
   const ProcessResult result =
       run_voxdag({"bench", "edits", dir / "m.vdag", "--replay", dir / "s.csv", "--radius", "3,20",
-                  "--repeat", "2", "--json"});
+                  "--repeat", "2", "--session", "30", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
   const auto& run = json.at("runs").at(0);
@@ -30,6 +30,8 @@ TEST(BenchEdits, JsonHasTheTimesOfSessionsAndBalls) {
   EXPECT_EQ(edits[0].at("most_radius"), 9);
   EXPECT_EQ(edits[1].at("name"), "add 3");
   for (const auto& edit : edits) EXPECT_GE(edit.at("most_ms"), edit.at("median_ms"));
+  EXPECT_EQ(run.at("session").at("edits"), 30);
+  EXPECT_GE(run.at("session").at("most_bytes"), run.at("session").at("early_bytes"));
 }
 
 TEST(BenchEdits, AMalformedSessionIsNamedWithItsLine) {

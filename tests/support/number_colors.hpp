@@ -36,7 +36,7 @@ class NumberColors {
     for (std::uint64_t i = 0; i < pages * kPageValues; ++i) {
       if (i % kPageValues == 0) pages_.add_page(at / 8);
       if (i % 4 == 0) {
-        write_bits(pages_.words.data(), at, 9, ValueBlock{ValueBlock::kRaw, 4}.pack());
+        write_bits(pages_.words.data(), at, 9, pages_.precision.pack_header({ValueBlock::kRaw, 4}));
         at += 9;
       }
       const Value8 color = color_of_number(i);

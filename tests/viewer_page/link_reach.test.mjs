@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { embedCode, whyNotShared } from '../../apps/viewer/page/ui/link_reach.js';
+import { embedCode, whyNotShared, withoutSecret } from '../../apps/viewer/page/ui/link_reach.js';
 
 test('a link that others cannot open says why', () => {
   for (const address of ['http://127.0.0.1:8080/#a', 'http://localhost/', 'https://scene.localhost/', 'http://[::1]:80/', 'http://0.0.0.0/'])
@@ -17,4 +17,10 @@ test('a link that others cannot open says why', () => {
 test('the code for another page escapes what could end an attribute', () => {
   const code = embedCode('https://example.org/a?b=1&c="2"#note=<x>', 'A "scene" & <more>');
   assert.match(code, /^<iframe src="https:\/\/example\.org\/a\?b=1&#38;c=&#34;2&#34;#note=&#60;x&#62;" title="A &#34;scene&#34; &#38; &#60;more&#62;" .*><\/iframe>$/);
+});
+
+test('links do not have the secret of edits', () => {
+  assert.equal(withoutSecret('http://localhost:8080/?edit=abc'), 'http://localhost:8080/');
+  assert.equal(withoutSecret('http://localhost:8080/?a=1&edit=abc'), 'http://localhost:8080/?a=1');
+  assert.equal(withoutSecret('https://example.org/scene.html'), 'https://example.org/scene.html');
 });

@@ -82,11 +82,13 @@ Json file_constants() {
 
 /// The stored words of a DAG's colours and normals; offsets are in bytes.
 Json pages_constants() {
-  Json channel_bits = Json::array();
-  for (int code = 0; code <= 3; ++code) {
-    const EndPrecision precision{code};
+  Json channel_bits = Json::array(), units = Json::array(), length_bits = Json::array();
+  for (int code = 0; code <= PagePrecision::kMaxCode; ++code) {
+    const PagePrecision precision{code};
     channel_bits.push_back(
         {precision.channel_bits(0), precision.channel_bits(1), precision.channel_bits(2)});
+    units.push_back(precision.unit());
+    length_bits.push_back(precision.length_bits());
   }
   return {{"headerBytes", sizeof(ValuePagesHeader)},
           VOXDAG_OFFSET(ValuePagesHeader, precision),
@@ -94,9 +96,9 @@ Json pages_constants() {
           VOXDAG_OFFSET(ValuePagesHeader, words),
           {"pageValues", kPageValues},
           {"groupPages", kGroupPages},
-          {"blockUnit", kBlockUnit},
-          VOXDAG_CONSTANT(ValueBlock, kHeaderBits),
-          {"typeBits", 3},
+          {"units", units},
+          {"lengthBits", length_bits},
+          VOXDAG_CONSTANT(ValueBlock, kTypeBits),
           VOXDAG_CONSTANT(ValueBlock, kStepBits),
           VOXDAG_CONSTANT(ValueBlock, kStepUnit),
           {"flat", static_cast<int>(ValueBlock::kFlat)},

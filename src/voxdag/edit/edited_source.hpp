@@ -50,6 +50,7 @@ class EditedSource {
   Cell child(const Cell& above, const NumberedCell& cell, Vec3i place) const;
   std::optional<StoredRun> run(const Cell& at, const NumberedCell& cell) const;
   Reader reader() const { return Reader(*this); }
+  std::size_t stored_count() const { return 1; }
   StoredValues stored(std::size_t) const { return {attributes_, {}}; }
   const ValueKinds& kinds() const { return kinds_; }
 

@@ -83,8 +83,8 @@ void read_tables(std::span<const std::byte> bytes, const Header& header, std::ui
 
 ValuePagesView read_pages(std::span<const std::byte> bytes, std::uint64_t cells) {
   const auto header = read_header<ValuePagesHeader>(bytes);
-  if (header.precision > 3)
-    fail_at("", "unknown precision " + std::to_string(header.precision) + ": 0 to 3 are allowed");
+  if (header.precision > PagePrecision::kMaxCode)
+    fail_at("", "unknown precision " + std::to_string(header.precision) + ": 0 to 7 are allowed");
   ValuePagesView view;
   view.precision = {static_cast<int>(header.precision)};
   read_tables(bytes, header, cells, view);

@@ -76,9 +76,9 @@ void decode(std::uint32_t id, const WireParts& parts, const wire::PagesTarget& t
       fail_at("", "has " + std::to_string(parameter) + " materials; 1 to 65,535 are allowed");
     return wire::decode_wire_materials(parts.segments, parts.coded, parameter, target);
   }
-  if (parameter > 3)
-    fail_at("", "unknown precision " + std::to_string(parameter) + ": 0 to 3 are allowed");
-  wire::decode_wire_values(parts.segments, parts.coded, EndPrecision{static_cast<int>(parameter)},
+  if (parameter > PagePrecision::kMaxCode)
+    fail_at("", "unknown precision " + std::to_string(parameter) + ": 0 to 7 are allowed");
+  wire::decode_wire_values(parts.segments, parts.coded, PagePrecision{static_cast<int>(parameter)},
                            id == kChunkColors ? wire::ValueKind::kColor : wire::ValueKind::kNormal,
                            target);
 }

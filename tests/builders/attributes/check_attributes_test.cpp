@@ -72,7 +72,8 @@ TEST(CheckAttributes, WhatTheBuilderStoresIsWithinTheBounds) {
 TEST(CheckAttributes, AFlippedBitOfAColourIsFound) {
   CheckedScene scene;
   // The highest bit of the red of the first end, after the header of the first block.
-  const int bit = ValueBlock::kHeaderBits + scene.attributes.colors.precision.channel_bits(0) - 1;
+  const PagePrecision precision = scene.attributes.colors.precision;
+  const int bit = precision.header_bits() + precision.channel_bits(0) - 1;
   scene.attributes.colors.words[0] ^= std::uint64_t{1} << bit;
   const AttributeCheck check = scene.check();
   EXPECT_GT(check.colors.largest_error, 0.1);

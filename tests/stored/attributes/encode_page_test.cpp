@@ -113,7 +113,7 @@ TEST(EncodePage, ThePageCostsLittleMoreThanTheBestCut) {
   for (const NamedValues& set : value_sets(kPageValues))
     for (const double bound : {2.0, 8.0, 20.0}) {
       const ValueMetric metric = make_value_metric(kColorWeights, bound);
-      const EndPrecision precision = choose_precision(metric);
+      const PagePrecision precision = choose_precision(metric);
       const BlockFitter fitter(std::span<const Value8, kPageValues>(set.values), metric, precision);
       std::vector<double> best{0};
       for (int end = kBlockUnit; end <= kPageValues; end += kBlockUnit) {

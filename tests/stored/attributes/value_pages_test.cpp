@@ -100,11 +100,11 @@ TEST(ValuePages, EveryTypeOfBlockIsReadAsSpecified) {
 }
 
 TEST(ValuePages, EndsRepeatTheirHighestBits) {
-  EXPECT_EQ((EndPrecision{0}.unpack(0xFFFF)), (Value8{255, 255, 255}));
-  EXPECT_EQ((EndPrecision{0}.unpack(16 | 32 << 5 | 1 << 11)), (Value8{132, 130, 8}));
-  EXPECT_EQ((EndPrecision{1}.unpack(32 | 1 << 6 | 63 << 12)), (Value8{130, 4, 255}));
-  EXPECT_EQ((EndPrecision{2}.unpack(64 | 1 << 7 | 127 << 14)), (Value8{129, 2, 255}));
-  EXPECT_EQ((EndPrecision{3}.unpack(1 | 2 << 8 | 255 << 16)), (Value8{1, 2, 255}));
+  EXPECT_EQ((PagePrecision{0}.unpack(0xFFFF)), (Value8{255, 255, 255}));
+  EXPECT_EQ((PagePrecision{0}.unpack(16 | 32 << 5 | 1 << 11)), (Value8{132, 130, 8}));
+  EXPECT_EQ((PagePrecision{1}.unpack(32 | 1 << 6 | 63 << 12)), (Value8{130, 4, 255}));
+  EXPECT_EQ((PagePrecision{2}.unpack(64 | 1 << 7 | 127 << 14)), (Value8{129, 2, 255}));
+  EXPECT_EQ((PagePrecision{3}.unpack(1 | 2 << 8 | 255 << 16)), (Value8{1, 2, 255}));
 }
 
 ValuePages small_page() {

@@ -2,53 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "support/error_of.hpp"
+#include "support/random_pages.hpp"
 #include "voxdag/stored/attributes/encode_material_ids.hpp"
 #include "voxdag/stored/attributes/validate_pages.hpp"
 
 namespace voxdag::wire {
 namespace {
-
-/// Returns pages of random blocks of every type. `busy`, 0 to 1, says how often ends and weights
-/// change.
-ValuePages random_pages(std::uint64_t values, int precision, unsigned seed, double busy) {
-  ValuePages pages;
-  pages.values = values;
-  pages.precision = {precision};
-  std::mt19937_64 rng(seed);
-  std::uint64_t at = 0, end = 0, weights = 0;
-  const auto add = [&](int width, std::uint64_t value) {
-    pages.words.resize((at + static_cast<std::uint64_t>(width) + 63) / 64);
-    write_bits(pages.words.data(), at, width, value & ((std::uint64_t{1} << width) - 1));
-    at += static_cast<std::uint64_t>(width);
-  };
-  const auto change = [&](std::uint64_t& bits) {
-    if (std::bernoulli_distribution(busy)(rng)) bits = rng();
-    return bits;
-  };
-  for (std::uint64_t page = 0; page < pages.view().page_count(); ++page) {
-    at = (at + 7) / 8 * 8;
-    pages.add_page(at / 8);
-    for (int left = kPageValues; left > 0;) {
-      ValueBlock block{static_cast<int>(rng() % 8), 0};
-      block.length = std::min(left, 4 * (1 + static_cast<int>(rng() % 9)));
-      if (rng() % 20 == 0) block.length = left;
-      left -= block.length;
-      add(ValueBlock::kHeaderBits, block.pack());
-      const int width = pages.precision.bits();
-      for (int i = 0; i < (block.type == ValueBlock::kRaw ? block.length : 1); ++i)
-        add(width, change(end));
-      if (block.has_step())
-        add(ValueBlock::kStepBits, rng());
-      else if (block.is_line())
-        add(width, change(end));
-      for (int i = 0; i < block.length; ++i) add(block.weight_bits(), change(weights));
-    }
-  }
-  return pages;
-}
 
 ValuePages decode(const WireValues& wire, const ValuePages& like, ValueKind kind) {
   ValuePages pages;
@@ -64,7 +24,7 @@ ValuePages decode(const WireValues& wire, const ValuePages& like, ValueKind kind
 }
 
 TEST(WireValues, DecodingGivesThePagesBack) {
-  for (int precision = 0; precision < 4; ++precision)
+  for (int precision = 0; precision <= PagePrecision::kMaxCode; ++precision)
     for (const ValueKind kind : {ValueKind::kColor, ValueKind::kNormal})
       for (const std::uint64_t values : {1u, 256u, 257u, 40'000u, 300'000u})
         for (const double busy : {0.0, 0.1, 1.0}) {
@@ -111,7 +71,8 @@ TEST(WireValues, APageOfOneBlockHasTheBytesOfTheExample) {
   ValuePages pages;
   pages.values = 256;
   pages.add_page(0);
-  pages.words = {ValueBlock{ValueBlock::kFlat, 256}.pack() | 4 << ValueBlock::kHeaderBits};
+  pages.words = {pages.precision.pack_header({ValueBlock::kFlat, 256}) |
+                 4 << pages.precision.header_bits()};
   const WireValues wire = encode_wire_values(pages.view(), ValueKind::kColor);
   const std::vector<std::byte> expected = {std::byte{0x00}, std::byte{0xE0}, std::byte{0x7F},
                                            std::byte{0x7F}, std::byte{0x80}, std::byte{0x00},

@@ -15,6 +15,13 @@ export function whyNotShared(address) {
   return '';
 }
 
+/** Returns an address without the secret that allows edits. @param {string} address  An absolute URL. */
+export function withoutSecret(address) {
+  const url = new URL(address);
+  url.searchParams.delete('edit');
+  return url.href;
+}
+
 /** Returns HTML that shows an address in another page. @param {string} address @param {string} title */
 export function embedCode(address, title) {
   const escaped = (/** @type {string} */ text) => text.replace(/[&"<>]/g, (c) => `&#${c.charCodeAt(0)};`);

@@ -2,7 +2,7 @@
 import { settingsToJson } from '../settings.js';
 import { button, choice, group, textField } from './controls.js';
 import { copy, download, h } from './dom.js';
-import { embedCode, whyNotShared } from './link_reach.js';
+import { embedCode, whyNotShared, withoutSecret } from './link_reach.js';
 import { openFile } from './open_file.js';
 
 /**
@@ -38,7 +38,7 @@ export function sharePanel(ui) {
   };
   /** Copies a text that is made of the page's address. @param {string} what @param {(address: string) => string} make */
   const share = async (what, make) => {
-    const hash = ui.hash(), address = location.href.split('#')[0] + (hash ? '#' + hash : '');
+    const hash = ui.hash(), address = withoutSecret(location.href.split('#')[0]) + (hash ? '#' + hash : '');
     const why = viewer.file !== null ? 'the scene is a file on this computer' : whyNotShared(address);
     if (!(await copy(make(address)))) return ui.toast('The browser did not allow copying; the link is in the address bar', true);
     if (why) return ui.toast(`${what} copied, but others cannot open the link: ${why}`, true);

@@ -10,7 +10,7 @@
 ///   a cell above                   gets the mean of its children as they are stored, weighted by
 ///                                  the number of cells of level m in each
 ///
-/// cell_mean.hpp says what a mean is. Values that are copied do not change unless a bound says so.
+/// cell_mean.hpp says what a mean is.
 ///
 /// A source is a type with
 ///   Cell                      copyable: where a cell of the result stands in the source
@@ -23,6 +23,7 @@
 ///                             the cell has the values of this number.
 ///   reader()                  returns a Reader for one thread, which refers to the source.
 ///                             reader.values(at, voxel) returns the CellValues of a voxel.
+///   stored_count()            returns the number of stored attributes
 ///   stored(i)                 returns the StoredValues that StoredRun::stored names
 ///   kinds()                   returns the ValueKinds of the result. Every StoredRun and every
 ///                             CellValues has all of them.
@@ -52,13 +53,10 @@ class SubtreeWalk {
         kinds_(source.kinds()),
         reader_(source.reader()) {}
 
-  /// Appends the values of `count` cells.
+  /// Appends the values of `count` cells. Returns those of the first.
   CellValues copy(const StoredRun& run, std::uint64_t count, ValueList& list) {
-    StoredReader& stored = stored_reader(run.stored);
-    const CellValues first = stored.values(run.first);
-    list.push(kinds_, first);
-    for (std::uint64_t i = 1; i < count; ++i) list.push(kinds_, stored.values(run.first + i));
-    return first;
+    list.push(run, count);
+    return stored_reader(run.stored).values(run.first);
   }
 
   /// Appends the values of all cells in the subtree of `cell`. Returns those of `cell`.
@@ -66,8 +64,7 @@ class SubtreeWalk {
                    ValueList& list) {
     if (const std::optional<StoredRun> run = source_.run(at, cell))
       return copy(*run, cells_in(dag_, derived_.index(), cell), list);
-    const std::size_t own = list.cells;
-    list.push(kinds_, {});
+    const std::size_t own = list.push({});
     CellMean mean(kinds_);
     if (cell.level == derived_.index().finest_level) {
       add_voxels(cell, place, at, mean);
@@ -137,19 +134,22 @@ void list_tops(const SvdagView& dag, const Source& source, const NumberedCell& c
 }  // namespace detail
 
 /// Returns the attributes of the cells of `dag`, a valid DAG, down to the level `finest_level`, 0
-/// to L. Copied and new values are encoded within `bounds`; the result's errors are the differences
-/// of this encoding. The result depends on the DAG and the source alone, on any number of threads.
-/// Without voxels or kinds, it is empty. Beside the encoding of all cells and O(DAG), the time
-/// follows the cells without a run. Counts its memory in `work` until it returns, some 16 bytes for
-/// each of the 65,536 cells that a thread derives in a step. Runs on the current TBB arena. Throws
-/// OverMemory and Cancelled.
+/// to L. Without bounds, copied values stay as they are, and new ones are rounded to the precision
+/// of the copied pages (join_page.hpp); a kind with a bound is encoded again within it. The
+/// result's errors are the differences of this encoding. The result depends on the DAG and the
+/// source alone, on any number of threads. Without voxels or kinds, it is empty. Beside the
+/// encoding of all cells and O(DAG), the time follows the cells without a run. Counts its memory in
+/// `work` until it returns, some 16 bytes for each of the 65,536 cells that a thread derives in a
+/// step. Runs on the current TBB arena. Throws OverMemory and Cancelled.
 template <class Source>
 DagAttributes derive_attributes(const SvdagView& dag, int finest_level, const Source& source,
                                 const CoarsenBounds& bounds = {}, Work work = {}) {
   using detail::kStepCells;
   const ValueKinds kinds = source.kinds();
   if (dag.is_empty() || kinds.is_empty()) return {};
-  detail::DerivedValues derived(dag, finest_level, kinds, bounds, work);
+  std::vector<StoredValues> stored;
+  for (std::size_t i = 0; i < source.stored_count(); ++i) stored.push_back(source.stored(i));
+  detail::DerivedValues derived(dag, finest_level, kinds, std::move(stored), bounds, work);
   CountedVector<typename Source::Cell> places(work.memory);
   detail::list_tops(dag, source, {}, {}, source.root(), derived, places);
   struct Step {
@@ -176,14 +176,13 @@ DagAttributes derive_attributes(const SvdagView& dag, int finest_level, const So
         const detail::TopCell& top = tops[step.top];
         detail::SubtreeWalk<Source> walk(dag, derived, source);
         detail::ValueList list;
-        list.reserve(kinds, step.count);
         Done done{i, {}, {}};
         if (top.run)
           done.values = walk.copy({top.run->stored, top.run->first + step.begin}, step.count, list);
         else
           done.values = walk.visit(top.cell, top.place, places[step.top], list);
         derived.encode(top.cell.number + step.begin, list);
-        done.materials = detail::DerivedValues::runs_of(list.materials);
+        done.materials = derived.materials_of(list);
         return done;
       },
       [&](const Done& done) {

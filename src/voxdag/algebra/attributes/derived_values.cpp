@@ -7,6 +7,25 @@
 
 namespace voxdag::detail {
 
+namespace {
+
+const ValuePagesView& colors_of(const DagAttributesView& of) { return of.colors; }
+const ValuePagesView& normals_of(const DagAttributesView& of) { return of.normals; }
+
+template <class Pages>
+ValueEncoder make_encoder(std::uint64_t cells, const ValueMetric& metric, bool copies,
+                          std::span<const StoredValues> stored, const Pages& pages,
+                          MemoryBudget* memory) {
+  if (!copies) return {cells, metric, memory};
+  std::vector<PagePrecision> precisions;
+  for (const StoredValues& values : stored)
+    if (!pages(values.attributes).is_empty())
+      precisions.push_back(pages(values.attributes).precision);
+  return {cells, metric, joined_precision(precisions), memory};
+}
+
+}  // namespace
+
 FinestCells::FinestCells(const SvdagView& dag, const CellIndexView& index, MemoryBudget* memory)
     : dag_(dag),
       index_(index),
@@ -29,32 +48,77 @@ std::uint64_t voxels_in(const SvdagView& dag, const NumberedCell& cell) {
 }
 
 DerivedValues::DerivedValues(const SvdagView& dag, int finest_level, const ValueKinds& kinds,
-                             const CoarsenBounds& bounds, Work work)
+                             std::vector<StoredValues> stored, const CoarsenBounds& bounds,
+                             Work work)
     : dag_(dag),
       kinds_(kinds),
+      stored_(std::move(stored)),
+      copies_colors_(bounds.color_bound <= 0),
+      copies_normals_(bounds.normal_bound_degrees < kMinNormalBound),
       work_(work),
       result_{build_cell_index(dag, finest_level, work.memory), {}, {}, {}, {}, {}},
       index_bytes_(work.memory, result_.index.view().bytes()),
       index_(result_.index.view()),
       finest_(dag, index_, work.memory),
-      colors_(kinds.colors ? index_.cells : 0,
-              make_value_metric(kColorWeights, 255 * bounds.color_bound), work.memory),
-      normals_(kinds.normals ? index_.cells : 0, make_normal_metric(bounds.normal_bound_degrees),
-               work.memory),
+      colors_(make_encoder(kinds.colors ? index_.cells : 0,
+                           make_value_metric(kColorWeights, 255 * bounds.color_bound),
+                           copies_colors_, stored_, colors_of, work.memory)),
+      normals_(make_encoder(kinds.normals ? index_.cells : 0,
+                            make_normal_metric(bounds.normal_bound_degrees), copies_normals_,
+                            stored_, normals_of, work.memory)),
       tops_(work.memory),
       materials_(work.memory) {}
 
-void DerivedValues::encode(std::uint64_t first, ValueList& values) {
-  colors_.add(first, values.colors);
-  normals_.add(first, values.normals);
-  values.colors = values.normals = {};
+template <class Pages, class Value>
+void DerivedValues::encode_kind(ValueEncoder& encoder, bool copies, std::uint64_t first,
+                                const ValueList& list, const Pages& pages,
+                                const Value& value) const {
+  std::vector<Value8> values;
+  std::size_t next = 0;
+  for (const ValueList::Part& part : list.parts()) {
+    values.clear();
+    if (!part.run) {
+      for (std::uint64_t i = 0; i < part.cells; ++i) values.push_back(value(list.values()[next++]));
+      encoder.add(first, values);
+    } else {
+      const ValuePagesView& from = pages(stored_[part.run->stored].attributes);
+      if (copies) {
+        encoder.copy(first, part.cells, from, part.run->first);
+      } else {
+        PageReader reader(from);
+        for (std::uint64_t i = 0; i < part.cells; ++i)
+          values.push_back(reader.value(part.run->first + i));
+        encoder.add(first, values);
+      }
+    }
+    first += part.cells;
+  }
 }
 
-std::vector<MaterialCells> DerivedValues::runs_of(const std::vector<std::uint16_t>& materials) {
+void DerivedValues::encode(std::uint64_t first, const ValueList& list) {
+  if (kinds_.colors)
+    encode_kind(colors_, copies_colors_, first, list, colors_of,
+                [](const CellValues& values) { return values.color; });
+  if (kinds_.normals)
+    encode_kind(normals_, copies_normals_, first, list, normals_of,
+                [](const CellValues& values) { return values.normal; });
+}
+
+std::vector<MaterialCells> DerivedValues::materials_of(const ValueList& list) const {
   std::vector<MaterialCells> runs;
-  for (const std::uint16_t id : materials) {
+  if (kinds_.materials == 0) return runs;
+  const auto add = [&](std::uint32_t id) {
     if (runs.empty() || runs.back().id != id) runs.push_back({id, 0});
     ++runs.back().count;
+  };
+  std::size_t next = 0;
+  for (const ValueList::Part& part : list.parts()) {
+    if (!part.run) {
+      for (std::uint64_t i = 0; i < part.cells; ++i) add(list.values()[next++].material);
+      continue;
+    }
+    StoredReader reader(stored_[part.run->stored]);
+    for (std::uint64_t i = 0; i < part.cells; ++i) add(reader.material(part.run->first + i));
   }
   return runs;
 }
@@ -77,7 +141,7 @@ CellValues DerivedValues::join(std::size_t& at) {
   }
   top.values = mean.result();
   ValueList one;
-  one.push(kinds_, top.values);
+  one.push(top.values);
   encode(top.cell.number, one);
   return top.values;
 }

@@ -28,28 +28,31 @@ struct MaterialCells {
   std::uint32_t id = 0, count = 0;
 };
 
-/// The values of cells with consecutive numbers, by kind.
-struct ValueList {
-  std::vector<Value8> colors, normals;
-  std::vector<std::uint16_t> materials;
-  std::size_t cells = 0;
+/// The values of cells with consecutive numbers.
+class ValueList {
+ public:
+  /// The next values() of new cells, or a run of stored ones.
+  struct Part {
+    std::uint64_t cells = 0;
+    std::optional<StoredRun> run;
+  };
 
-  void reserve(const ValueKinds& kinds, std::size_t count) {
-    if (kinds.colors) colors.reserve(count);
-    if (kinds.normals) normals.reserve(count);
-    if (kinds.materials != 0) materials.reserve(count);
+  /// Appends a new cell. Returns its place in values().
+  std::size_t push(const CellValues& values) {
+    if (parts_.empty() || parts_.back().run) parts_.push_back({});
+    ++parts_.back().cells;
+    values_.push_back(values);
+    return values_.size() - 1;
   }
-  void push(const ValueKinds& kinds, const CellValues& values) {
-    ++cells;
-    if (kinds.colors) colors.push_back(values.color);
-    if (kinds.normals) normals.push_back(values.normal);
-    if (kinds.materials != 0) materials.push_back(values.material);
-  }
-  void set(std::size_t place, const CellValues& values) {
-    if (!colors.empty()) colors[place] = values.color;
-    if (!normals.empty()) normals[place] = values.normal;
-    if (!materials.empty()) materials[place] = values.material;
-  }
+  void push(const StoredRun& run, std::uint64_t cells) { parts_.push_back({cells, run}); }
+  void set(std::size_t place, const CellValues& values) { values_[place] = values; }
+
+  std::span<const Part> parts() const { return parts_; }
+  std::span<const CellValues> values() const { return values_; }
+
+ private:
+  std::vector<Part> parts_;
+  std::vector<CellValues> values_;  ///< Of the parts without a run.
 };
 
 /// Counts the cells of the finest level below cells of a DAG.
@@ -87,16 +90,16 @@ struct TopCell {
 class DerivedValues {
  public:
   DerivedValues(const SvdagView& dag, int finest_level, const ValueKinds& kinds,
-                const CoarsenBounds& bounds, Work work);
+                std::vector<StoredValues> stored, const CoarsenBounds& bounds, Work work);
 
   const CellIndexView& index() const { return index_; }
   const FinestCells& finest_cells() const { return finest_; }
   CountedVector<TopCell>& tops() { return tops_; }
 
   /// Encodes colours and normals of cells from number `first` on. Thread-safe.
-  void encode(std::uint64_t first, ValueList& values);
-  /// Returns the materials as runs.
-  static std::vector<MaterialCells> runs_of(const std::vector<std::uint16_t>& materials);
+  void encode(std::uint64_t first, const ValueList& list);
+  /// Returns the materials of cells as runs. Thread-safe.
+  std::vector<MaterialCells> materials_of(const ValueList& list) const;
   /// Adds the materials of the next cells of a top cell. Calls are in the order of the numbers.
   void add_materials(TopCell& top, const std::vector<MaterialCells>& runs);
   /// Returns the attributes. All top cells that are not inner have their values.
@@ -104,9 +107,16 @@ class DerivedValues {
 
  private:
   CellValues join(std::size_t& at);
+  /// Encodes the values of one kind: pages(attributes) are the stored ones, value(values) is that
+  /// of a new cell.
+  template <class Pages, class Value>
+  void encode_kind(ValueEncoder& encoder, bool copies, std::uint64_t first, const ValueList& list,
+                   const Pages& pages, const Value& value) const;
 
   SvdagView dag_;
   ValueKinds kinds_;
+  std::vector<StoredValues> stored_;
+  bool copies_colors_, copies_normals_;  ///< Values that stay as they are stored are not decoded.
   Work work_;
   DagAttributes result_;
   MemoryReservation index_bytes_;

@@ -71,6 +71,7 @@ class PlacedSource {
   Cell child(const Cell& above, const NumberedCell& cell, Vec3i place) const;
   std::optional<StoredRun> run(const Cell& at, const NumberedCell& cell) const;
   Reader reader() const { return Reader(*this); }
+  std::size_t stored_count() const { return layers_.size(); }
   StoredValues stored(std::size_t i) const {
     return {layers_[i].colored.attributes, layers_[i].material_ids};
   }

@@ -30,12 +30,13 @@ class StoredReader {
     CellValues values;
     if (of.has_colors()) values.color = colors_[place].value(number);
     if (of.has_normals()) values.normal = normals_[place].value(number);
-    if (of.has_materials()) {
-      const std::uint32_t id = read_material(of.materials, number);
-      values.material =
-          stored_.material_ids.empty() ? static_cast<std::uint16_t>(id) : stored_.material_ids[id];
-    }
+    if (of.has_materials()) values.material = material(number);
     return values;
+  }
+  /// Returns the material of a cell. There must be materials.
+  std::uint16_t material(std::uint64_t number) const {
+    const std::uint32_t id = read_material(stored_.attributes.materials, number);
+    return stored_.material_ids.empty() ? static_cast<std::uint16_t>(id) : stored_.material_ids[id];
   }
 
  private:

@@ -103,7 +103,7 @@ class PageMerger {
 class PageEncoder {
  public:
   PageEncoder(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
-              EndPrecision precision, const PageMerger& merger)
+              PagePrecision precision, const PageMerger& merger)
       : merger_(merger), fitter_(values, metric, precision) {}
 
   /// Calls use(block) for the fitted blocks, in order. Splits a block that must store each value by
@@ -155,14 +155,14 @@ void ValueErrors::count(Value8 given, Value8 stored) {
 }
 
 EncodedPage encode_page(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
-                        EndPrecision precision, int given) {
+                        PagePrecision precision, int given) {
   PageMerger merger(values, metric);
   merger.merge(BlockEstimator(values.data(), metric, precision));
   const PageEncoder encoder(values, metric, precision, merger);
   EncodedPage page;
   PageWriter writer(page);
   encoder.for_each_fitted([&](const FittedBlock& fitted) {
-    writer.add(fitted.block.pack(), ValueBlock::kHeaderBits);
+    writer.add(precision.pack_header(fitted.block), precision.header_bits());
     encoder.fitter().write(
         fitted, [&](std::uint64_t value, int bits) { writer.add(value, bits); },
         [&](int i, Value8 stored) {

@@ -16,10 +16,10 @@
 
 namespace voxdag {
 
-/// The most words of a page: all its blocks have the least length and store each value by itself.
+/// The most words of a page: blocks of 4 values store each value by itself.
 inline constexpr int kMaxPageWords =
-    kPageValues / kBlockUnit * ValueBlock{ValueBlock::kRaw, kBlockUnit}.bits(24) / 64;
-static_assert(kMaxPageWords == 105);
+    kPageValues / kBlockUnit * PagePrecision{7}.bits_of({ValueBlock::kRaw, kBlockUnit}) / 64;
+static_assert(kMaxPageWords == 107);
 
 /// The differences between the given and the stored values.
 struct ValueErrors {
@@ -46,6 +46,6 @@ struct EncodedPage {
 /// differences of the first `given` values; the others only fill the page up. The result depends on
 /// the arguments alone.
 EncodedPage encode_page(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
-                        EndPrecision precision, int given = kPageValues);
+                        PagePrecision precision, int given = kPageValues);
 
 }  // namespace voxdag

@@ -64,11 +64,11 @@ AxisExtent extent_along(const PrincipalAxis& axis, const Value8* values, const V
 }
 
 BlockEstimator::BlockEstimator(const Value8* values, const ValueMetric& metric,
-                               EndPrecision precision)
-    : values_(values), metric_(metric), end_bits_(precision.bits()), price_(metric.price()) {
+                               PagePrecision precision)
+    : values_(values), metric_(metric), precision_(precision), price_(metric.price()) {
   for (int c = 0; c < 3; ++c) {
     const auto weight = static_cast<float>(metric.weights[static_cast<std::size_t>(c)]);
-    if (precision.code < 3)
+    if (precision.channel_bits(c) < 8)
       rounding_ += weight * square(static_cast<float>(1 << (8 - precision.channel_bits(c)))) / 12;
   }
 }
@@ -134,7 +134,7 @@ float BlockEstimator::cost(int begin, const ValueSums& sums) const {
         lines_cost(sums, true, price_ * (off_line + rounding), farthest_off, grey, extent2, least);
   // A line along the principal axis has a longer second end, and can only reduce the errors.
   if (bits(5, sums) + price_ * rounding < least &&
-      price_ * off_line > static_cast<float>(end_bits_ - ValueBlock::kStepBits))
+      price_ * off_line > static_cast<float>(precision_.bits() - ValueBlock::kStepBits))
     return principal_cost(begin, sums, total, least);
   if (farthest_off >= bound) return principal_cost(begin, sums, total, least);
   return least;

@@ -113,7 +113,7 @@ AxisExtent extent_along(const PrincipalAxis& axis, const Value8* values, const V
 class BlockEstimator {
  public:
   /// Refers to the values and the metric.
-  BlockEstimator(const Value8* values, const ValueMetric& metric, EndPrecision precision);
+  BlockEstimator(const Value8* values, const ValueMetric& metric, PagePrecision precision);
 
   /// Returns the estimated cost in bits of the values from `begin` on, whose sums are `sums`, as
   /// one block of the best type that is expected to keep the bound.
@@ -126,12 +126,12 @@ class BlockEstimator {
   float lines_cost(const ValueSums& sums, bool is_grey, float fixed, float farthest_off,
                    float spread, float extent2, float least) const;
   float bits(int type, const ValueSums& sums) const {
-    return static_cast<float>(ValueBlock{type, sums.count}.bits(end_bits_));
+    return static_cast<float>(precision_.bits_of({type, sums.count}));
   }
 
   const Value8* values_;
   const ValueMetric& metric_;
-  int end_bits_;
+  PagePrecision precision_;
   float price_;
   float rounding_ = 0;  // mean error of an end
 };

@@ -37,22 +37,22 @@ std::uint8_t to_byte(float v) {
 
 }  // namespace
 
-BlockFitter::BlockFitter(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
-                         EndPrecision precision)
-    : values_(values), metric_(metric), precision_(precision), price_(metric.price()) {}
-
-std::uint32_t BlockFitter::pack(Value8 value) const {
+std::uint32_t pack_end(Value8 value, PagePrecision precision) {
   static const NearestFields nearest;
   std::uint32_t end = 0;
   for (int c = 2; c >= 0; --c) {
-    const int bits = precision_.channel_bits(c);
+    const int bits = precision.channel_bits(c);
     end = end << bits | nearest(bits, value[c]);
   }
   return end;
 }
 
+BlockFitter::BlockFitter(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
+                         PagePrecision precision)
+    : values_(values), metric_(metric), precision_(precision), price_(metric.price()) {}
+
 std::uint32_t BlockFitter::pack(const float (&value)[3]) const {
-  return pack(Value8{to_byte(value[0]), to_byte(value[1]), to_byte(value[2])});
+  return pack_end({to_byte(value[0]), to_byte(value[1]), to_byte(value[2])}, precision_);
 }
 
 BlockFitter::Line BlockFitter::line_of(const FittedBlock& fitted) const {
@@ -93,8 +93,8 @@ bool BlockFitter::measure(FittedBlock& fitted, WeightSums& sums) const {
     sums.squares += k * k;
     for (int c = 0; c < 3; ++c) sums.products[static_cast<std::size_t>(c)] += k * value[c];
   }
-  fitted.cost = static_cast<float>(fitted.block.bits(precision_.bits())) +
-                price_ * static_cast<float>(errors);
+  fitted.cost =
+      static_cast<float>(precision_.bits_of(fitted.block)) + price_ * static_cast<float>(errors);
   return largest <= metric_.bound;
 }
 
@@ -106,12 +106,13 @@ bool BlockFitter::measure_constant(FittedBlock& fitted) const {
   int largest = 0;
   for (int i = fitted.begin; i < fitted.end(); ++i) {
     const Value8 value = values_[static_cast<std::size_t>(i)];
-    const int error = metric_.error(value, is_flat ? e0 : precision_.unpack(pack(value)));
+    const int error =
+        metric_.error(value, is_flat ? e0 : precision_.unpack(pack_end(value, precision_)));
     largest = std::max(largest, error);
     errors += static_cast<std::uint32_t>(error);
   }
-  fitted.cost = static_cast<float>(fitted.block.bits(precision_.bits())) +
-                price_ * static_cast<float>(errors);
+  fitted.cost =
+      static_cast<float>(precision_.bits_of(fitted.block)) + price_ * static_cast<float>(errors);
   return largest <= metric_.bound;
 }
 
@@ -191,7 +192,7 @@ void BlockFitter::try_lines(int first_type, float off_line, const ValueSums& sum
   for (int type = first_type; type < first_type + 3; ++type) {
     FittedBlock candidate = best;
     candidate.block.type = type;
-    const auto bits = static_cast<float>(candidate.block.bits(precision_.bits()));
+    const auto bits = static_cast<float>(precision_.bits_of(candidate.block));
     if (bits + price_ * off_line >= best.cost) return;
     set_ends(candidate);
     try_line(candidate, sums, best);

@@ -19,12 +19,15 @@ struct FittedBlock {
   int end() const { return begin + block.length; }
 };
 
+/// Returns the end that is nearest to a value.
+std::uint32_t pack_end(Value8 value, PagePrecision precision);
+
 /// Fits blocks to the values of one page.
 class BlockFitter {
  public:
   /// Refers to the metric.
   BlockFitter(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
-              EndPrecision precision);
+              PagePrecision precision);
 
   /// Returns the block of least cost that was found for the values from `begin` on, whose sums are
   /// `sums`; `begin` and their number are multiples of kBlockUnit. Tries one value for all, lines
@@ -39,7 +42,7 @@ class BlockFitter {
     const ValueBlock& block = fitted.block;
     if (block.type == ValueBlock::kRaw) {
       for (int i = fitted.begin; i < fitted.end(); ++i) {
-        const std::uint32_t end = pack(values_[static_cast<std::size_t>(i)]);
+        const std::uint32_t end = pack_end(values_[static_cast<std::size_t>(i)], precision_);
         add(end, end_bits);
         is_stored(i, precision_.unpack(end));
       }
@@ -80,7 +83,6 @@ class BlockFitter {
     std::array<int, 3> products{};  ///< Sums of weight times channel.
   };
 
-  std::uint32_t pack(Value8 value) const;
   std::uint32_t pack(const float (&value)[3]) const;
   Line line_of(const FittedBlock& fitted) const;
   bool measure(FittedBlock& fitted, WeightSums& sums) const;
@@ -94,7 +96,7 @@ class BlockFitter {
 
   std::span<const Value8, kPageValues> values_;
   const ValueMetric& metric_;
-  EndPrecision precision_;
+  PagePrecision precision_;
   float price_;
 };
 

@@ -28,7 +28,7 @@ class PageReader {
       return value;
     };
     for (std::size_t first = 0; first < kPageValues;) {
-      const ValueBlock block = ValueBlock::unpack(take(ValueBlock::kHeaderBits));
+      const ValueBlock block = pages_.precision.unpack_header(take(pages_.precision.header_bits()));
       const std::size_t end = first + static_cast<std::size_t>(block.length);
       Value8 e0{}, e1{};
       if (block.type != ValueBlock::kRaw) e0 = pages_.precision.unpack(take(end_bits));

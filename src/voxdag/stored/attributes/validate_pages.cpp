@@ -41,11 +41,13 @@ void validate_cell_pages(const CellPagesView& view, const PageEnd& page_end) {
 std::uint64_t page_end(const ValuePagesView& view, std::uint64_t page, std::uint64_t at) {
   const std::uint64_t end = view.word_count * 64;
   for (int values = 0; values < kPageValues;) {
-    if (at + ValueBlock::kHeaderBits > end) fail_page(page, "ends after the last word");
-    const ValueBlock block = ValueBlock::unpack(read_bits(view.words, at, ValueBlock::kHeaderBits));
+    const int header_bits = view.precision.header_bits();
+    if (at + static_cast<std::uint64_t>(header_bits) > end)
+      fail_page(page, "ends after the last word");
+    const ValueBlock block = view.precision.unpack_header(read_bits(view.words, at, header_bits));
     values += block.length;
     if (values > kPageValues) fail_page(page, "has more than 256 values");
-    at += static_cast<std::uint64_t>(block.bits(view.precision.bits()));
+    at += static_cast<std::uint64_t>(view.precision.bits_of(block));
     if (at > end) fail_page(page, "ends after the last word");
   }
   return at;
@@ -87,7 +89,7 @@ std::uint64_t page_end(const MaterialIdsView& view, std::uint64_t page, std::uin
 }  // namespace
 
 void validate_value_pages(const ValuePagesView& view) {
-  if (view.precision.code < 0 || view.precision.code > 3)
+  if (view.precision.code < 0 || view.precision.code > PagePrecision::kMaxCode)
     throw Error("", "", "unknown precision " + std::to_string(view.precision.code));
   // Even the last page holds 256 values.
   validate_cell_pages(view, [&](std::uint64_t page, std::uint64_t at, std::uint64_t) {

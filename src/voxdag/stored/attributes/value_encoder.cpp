@@ -5,9 +5,13 @@
 namespace voxdag {
 
 ValueEncoder::ValueEncoder(std::uint64_t values, const ValueMetric& metric, MemoryBudget* memory)
+    : ValueEncoder(values, metric, choose_precision(metric), memory) {}
+
+ValueEncoder::ValueEncoder(std::uint64_t values, const ValueMetric& metric, PagePrecision precision,
+                           MemoryBudget* memory)
     : values_(values),
       metric_(metric),
-      precision_(choose_precision(metric)),
+      precision_(precision),
       memory_(memory),
       open_(memory),
       places_((values + kPageValues - 1) / kPageValues, {}, memory) {}
@@ -17,29 +21,53 @@ void ValueEncoder::add(std::uint64_t first, std::span<const Value8> values) {
     const std::uint64_t page = first / kPageValues;
     const std::size_t count =
         std::min<std::size_t>(values.size(), kPageValues - first % kPageValues);
-    if (count == kPageValues)
+    if (count == kPageValues && !copies())
       keep(page, encode_page(values.first<kPageValues>(), metric_, precision_));
     else
-      add_part(first, values.first(count));
+      add_part(first, count, [&](OpenPage& open) {
+        std::copy_n(values.begin(), count,
+                    open.values.begin() + static_cast<std::ptrdiff_t>(first % kPageValues));
+      });
     first += count;
     values = values.subspan(count);
   }
 }
 
-/// Adds values of one page. Compresses the page if it is complete.
-void ValueEncoder::add_part(std::uint64_t first, std::span<const Value8> values) {
+void ValueEncoder::copy(std::uint64_t first, std::uint64_t count, const ValuePagesView& from,
+                        std::uint64_t from_first) {
+  while (count > 0) {
+    const std::uint64_t here = std::min(count, kPageValues - first % kPageValues);
+    const CopiedValues part{static_cast<int>(first % kPageValues), static_cast<int>(here), from,
+                            from_first};
+    if (here == kPageValues)
+      keep(first / kPageValues, join_page({}, {&part, 1}, kPageValues, metric_, precision_));
+    else
+      add_part(first, here, [&](OpenPage& open) { open.copies.push_back(part); });
+    first += here;
+    from_first += here;
+    count -= here;
+  }
+}
+
+template <class Set>
+void ValueEncoder::add_part(std::uint64_t first, std::uint64_t count, const Set& set) {
   const std::uint64_t page = first / kPageValues, begin = page * kPageValues;
   const std::uint64_t whole = std::min<std::uint64_t>(kPageValues, values_ - begin);
   OpenPage complete;
   {
     const std::lock_guard lock(mutex_);
     OpenPage& open = open_[page];
-    std::copy(values.begin(), values.end(),
-              open.values.begin() + static_cast<std::ptrdiff_t>(first - begin));
-    open.count += values.size();
+    set(open);
+    open.count += count;
     if (open.count < whole) return;
-    complete = open;
+    complete = std::move(open);
     open_.erase(page);
+  }
+  if (copies()) {
+    std::sort(complete.copies.begin(), complete.copies.end(),
+              [](const CopiedValues& a, const CopiedValues& b) { return a.begin < b.begin; });
+    return keep(page, join_page(complete.values, complete.copies, static_cast<int>(whole), metric_,
+                                precision_));
   }
   std::fill(complete.values.begin() + static_cast<std::ptrdiff_t>(whole), complete.values.end(),
             complete.values[whole - 1]);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/stored/attributes/encode_page.hpp"
+#include "voxdag/stored/attributes/join_page.hpp"
 
 namespace voxdag {
 
@@ -19,9 +19,19 @@ class ValueEncoder {
   /// Expects `values` values. Counts its memory in `memory`.
   ValueEncoder(std::uint64_t values, const ValueMetric& metric, MemoryBudget* memory);
 
+  /// The same, for values of which some are copied. `precision` is joined_precision() of all
+  /// sources of copies. The metric's bound is 0.
+  ValueEncoder(std::uint64_t values, const ValueMetric& metric, PagePrecision precision,
+               MemoryBudget* memory);
+
   /// Takes the values from number `first` on. Every value must be in exactly one call. Thread-safe.
   /// Throws OverMemory.
   void add(std::uint64_t first, std::span<const Value8> values);
+
+  /// Takes `count` values that are those of `from` from number `from_first` on. `from` must outlive
+  /// the call of finish(). Otherwise like add().
+  void copy(std::uint64_t first, std::uint64_t count, const ValuePagesView& from,
+            std::uint64_t from_first);
 
   /// Returns all pages, which depend on the values alone. Every value must have come. Does not
   /// count the result once it has returned. Throws OverMemory.
@@ -33,6 +43,7 @@ class ValueEncoder {
  private:
   struct OpenPage {
     std::array<Value8, kPageValues> values;
+    std::vector<CopiedValues> copies;
     std::uint64_t count = 0;
   };
   using OpenPages = std::unordered_map<std::uint64_t, OpenPage, std::hash<std::uint64_t>,
@@ -46,12 +57,16 @@ class ValueEncoder {
   };
   static constexpr std::size_t kChunkWords = 1 << 15;
 
-  void add_part(std::uint64_t first, std::span<const Value8> values);
+  /// Calls set(page) for the page of `count` values from number `first` on, and compresses it if it
+  /// is complete.
+  template <class Set>
+  void add_part(std::uint64_t first, std::uint64_t count, const Set& set);
+  bool copies() const { return precision_.unit() == 1; }
   void keep(std::uint64_t page, const EncodedPage& encoded);
 
   const std::uint64_t values_;
   const ValueMetric metric_;
-  const EndPrecision precision_;
+  const PagePrecision precision_;
   MemoryBudget* memory_;
   std::mutex mutex_;
   OpenPages open_;  // by page

@@ -11,13 +11,13 @@ ValueMetric make_value_metric(std::array<int, 3> weights, double bound) {
   return metric;
 }
 
-EndPrecision choose_precision(const ValueMetric& metric) {
+PagePrecision choose_precision(const ValueMetric& metric) {
   for (int code = 0; code < 3; ++code) {
     int worst = 0;
     float mean = 0;  // of the squared errors, as if rounding were random
     for (int c = 0; c < 3; ++c) {
       // The values of neighbouring ends differ by at most this step.
-      const int step = (1 << (8 - EndPrecision{code}.channel_bits(c))) + 1;
+      const int step = (1 << (8 - PagePrecision{code}.channel_bits(c))) + 1;
       const int weight = metric.weights[static_cast<std::size_t>(c)];
       worst += weight * (step / 2) * (step / 2);
       mean += static_cast<float>(weight * (step - 1) * (step - 1)) / 12;

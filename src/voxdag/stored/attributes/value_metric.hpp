@@ -40,6 +40,6 @@ ValueMetric make_value_metric(std::array<int, 3> weights, double bound);
 
 /// Returns the coarsest precision whose rounding of ends costs little, and with which an end can
 /// stand for every value within the bound.
-EndPrecision choose_precision(const ValueMetric& metric);
+PagePrecision choose_precision(const ValueMetric& metric);
 
 }  // namespace voxdag

@@ -3,7 +3,7 @@
 ///
 /// A page holds 256 values with consecutive numbers, as a sequence of blocks. A block of n values:
 ///
-///   header    9 bits: type in bits 0..2, n / 4 - 1 in bits 3..8
+///   header    type in bits 0..2, then n / 4 - 1 in 6 bits, or n - 1 in 8 bits (precision 4 to 7)
 ///   ends      depend on the type
 ///   weights   n weights of w bits
 ///
@@ -26,7 +26,8 @@
 
 namespace voxdag {
 
-inline constexpr int kBlockUnit = 4;  ///< Lengths of blocks are multiples of this.
+/// Lengths of blocks are multiples of this in the precisions 0 to 3.
+inline constexpr int kBlockUnit = 4;
 
 /// A value: a colour (red, green, blue, sRGB encoded) or a normal (see stored_attributes.hpp).
 using Value8 = Vec3<std::uint8_t>;
@@ -34,17 +35,11 @@ using Value8 = Vec3<std::uint8_t>;
 /// The header of a block, and the sizes of the block's parts.
 struct ValueBlock {
   enum Type : int { kFlat = 0, kRaw = 4 };
-  static constexpr int kHeaderBits = 9, kStepBits = 6, kStepUnit = 4;
+  static constexpr int kTypeBits = 3, kStepBits = 6, kStepUnit = 4;
 
   int type = kFlat;
   int length = kBlockUnit;  ///< Number of values.
 
-  VOXDAG_HD static constexpr ValueBlock unpack(std::uint64_t bits) {
-    return {static_cast<int>(bits & 7), kBlockUnit * (static_cast<int>(bits >> 3 & 63) + 1)};
-  }
-  VOXDAG_HD constexpr std::uint64_t pack() const {
-    return static_cast<std::uint64_t>((length / kBlockUnit - 1) << 3 | type);
-  }
   VOXDAG_HD constexpr bool is_line() const { return type != kFlat && type != kRaw; }
   VOXDAG_HD constexpr bool has_step() const { return type >= 1 && type <= 3; }
   /// Returns w.
@@ -58,20 +53,47 @@ struct ValueBlock {
            : has_step()   ? end_bits + kStepBits
                           : 2 * end_bits;
   }
-  /// Returns the number of bits of the whole block.
-  VOXDAG_HD constexpr int bits(int end_bits) const {
-    return kHeaderBits + ends_bits(end_bits) + weight_bits() * length;
+  /// Returns the number of bits after the header.
+  VOXDAG_HD constexpr int body_bits(int end_bits) const {
+    return ends_bits(end_bits) + weight_bits() * length;
   }
 };
 
-/// The numbers of bits of an end's channels.
-struct EndPrecision {
-  int code = 0;  ///< 0: 5, 6, 5; 1: 6, 6, 6; 2: 7, 7, 7; 3: 8, 8, 8.
+/// The numbers of bits of an end's channels and of a block's length.
+struct PagePrecision {
+  static constexpr int kMaxCode = 7;
+  static constexpr int kAnyLength = 4;  ///< Added to a code: blocks may have any length.
+
+  /// 0: 5, 6, 5; 1: 6, 6, 6; 2: 7, 7, 7; 3: 8, 8, 8; 4 to 7: the same, with blocks of any length.
+  int code = 0;
+
+  /// Returns what the lengths of blocks are multiples of.
+  VOXDAG_HD constexpr int unit() const { return code < kAnyLength ? kBlockUnit : 1; }
+  VOXDAG_HD constexpr int length_bits() const { return code < kAnyLength ? 6 : 8; }
+  VOXDAG_HD constexpr int header_bits() const { return ValueBlock::kTypeBits + length_bits(); }
+  /// Returns the block with this header, whose other bits are zero.
+  VOXDAG_HD constexpr ValueBlock unpack_header(std::uint64_t header) const {
+    return {static_cast<int>(header & 7),
+            unit() * (static_cast<int>(header >> ValueBlock::kTypeBits) + 1)};
+  }
+  VOXDAG_HD constexpr std::uint64_t pack_header(const ValueBlock& block) const {
+    return static_cast<std::uint64_t>((block.length / unit() - 1) << ValueBlock::kTypeBits |
+                                      block.type);
+  }
+  /// Returns the number of bits of a whole block.
+  VOXDAG_HD constexpr int bits_of(const ValueBlock& block) const {
+    return header_bits() + block.body_bits(bits());
+  }
 
   VOXDAG_HD constexpr int channel_bits(int channel) const {
-    return code > 0 ? code + 5 : channel == 1 ? 6 : 5;
+    const int fine = code & 3;
+    return fine > 0 ? fine + 5 : channel == 1 ? 6 : 5;
   }
-  VOXDAG_HD constexpr int bits() const { return code > 0 ? 3 * (code + 5) : 16; }
+  /// Returns the number of bits of an end.
+  VOXDAG_HD constexpr int bits() const {
+    const int fine = code & 3;
+    return fine > 0 ? 3 * (fine + 5) : 16;
+  }
   /// Returns the value that an end stands for.
   VOXDAG_HD constexpr Value8 unpack(std::uint64_t end) const {
     Value8 value{};
@@ -106,12 +128,12 @@ VOXDAG_HD constexpr Value8 stepped_end(Value8 e0, int step) {
 
 /// A view for kernels and readers.
 struct ValuePagesView : CellPagesView {
-  EndPrecision precision;
+  PagePrecision precision;
 };
 
 /// Values in memory. The view is valid while this object lives unchanged.
 struct ValuePages : CellPages {
-  EndPrecision precision;
+  PagePrecision precision;
 
   ValuePagesView view() const { return {CellPages::view(), precision}; }
 };
@@ -121,14 +143,14 @@ struct ValuePages : CellPages {
 VOXDAG_HD inline Value8 read_value(const ValuePagesView& view, std::uint64_t number) {
   std::uint64_t at = view.page_begin(number / kPageValues);
   int index = static_cast<int>(number % kPageValues);
-  const int end_bits = view.precision.bits();
-  ValueBlock block = ValueBlock::unpack(read_bits(view.words, at, ValueBlock::kHeaderBits));
+  const int end_bits = view.precision.bits(), header_bits = view.precision.header_bits();
+  ValueBlock block = view.precision.unpack_header(read_bits(view.words, at, header_bits));
   while (index >= block.length) {
     index -= block.length;
-    at += static_cast<std::uint64_t>(block.bits(end_bits));
-    block = ValueBlock::unpack(read_bits(view.words, at, ValueBlock::kHeaderBits));
+    at += static_cast<std::uint64_t>(header_bits + block.body_bits(end_bits));
+    block = view.precision.unpack_header(read_bits(view.words, at, header_bits));
   }
-  at += ValueBlock::kHeaderBits;
+  at += static_cast<std::uint64_t>(header_bits);
   if (block.type == ValueBlock::kRaw) at += static_cast<std::uint64_t>(index * end_bits);
   const Value8 e0 = view.precision.unpack(read_bits(view.words, at, end_bits));
   if (!block.is_line()) return e0;

@@ -17,17 +17,17 @@ enum class ValueKind { kColor, kNormal };
 /// The numbers of contexts of a ValueModel.
 struct ValueModelSizes {
   static constexpr int kTypes = 8;
-  static constexpr int kLengthBits = 6, kLengthContexts = 4;
+  static constexpr int kLengthBits = 8, kLengthContexts = 4;
   static constexpr int kEndBits = 8, kEndContexts = 12;
   static constexpr int kStepBits = ValueBlock::kStepBits;
   static constexpr int kWeightBits = 4;
   static constexpr int kNoWeight = 1 << kWeightBits;  ///< In place of a weight before the first.
 };
 
-/// The adaptive contexts, and the fields that choose among them. About 220 KB.
+/// The adaptive contexts, and the fields that choose among them. About 250 KB.
 class ValueModel : private ValueModelSizes {
  public:
-  explicit ValueModel(EndPrecision precision, ValueKind kind)
+  explicit ValueModel(PagePrecision precision, ValueKind kind)
       : precision_(precision), kind_(kind) {}
 
   /// Codes the next page. `coder` is a RangeEncoder or a RangeDecoder. `bits` reads the page
@@ -38,12 +38,10 @@ class ValueModel : private ValueModelSizes {
   bool code_page(Coder& coder, Bits& bits) {
     int values = 0;
     while (values < kPageValues) {
-      if (!bits.has_room(ValueBlock::kHeaderBits)) return false;
+      if (!bits.has_room(precision_.header_bits())) return false;
       const ValueBlock block = code_header(coder, bits, values == 0);
       values += block.length;
-      if (values > kPageValues ||
-          !bits.has_room(block.bits(precision_.bits()) - ValueBlock::kHeaderBits))
-        return false;
+      if (values > kPageValues || !bits.has_room(block.body_bits(precision_.bits()))) return false;
       code_ends(coder, bits, block);
       code_weights(coder, bits, block);
     }
@@ -53,15 +51,18 @@ class ValueModel : private ValueModelSizes {
  private:
   template <class Coder, class Bits>
   ValueBlock code_header(Coder& coder, Bits& bits, bool is_first) {
-    const auto header = static_cast<std::uint32_t>(bits.take(ValueBlock::kHeaderBits));
+    const int header_bits = precision_.header_bits();
+    const auto header = static_cast<std::uint32_t>(bits.take(header_bits));
     const std::uint32_t type = types_[last_type_][type_before_].code(coder, header & 7);
-    const int of_length = is_first ? 0 : std::min(kLengthContexts - 1, 1 + last_length_ / 8);
-    const std::uint32_t length = lengths_[type][of_length].code(coder, header >> 3);
-    bits.put(ValueBlock::kHeaderBits, length << 3 | type);
+    const int of_length = is_first ? 0 : std::min(kLengthContexts - 1, 1 + last_length_ / 32);
+    const std::uint32_t length =
+        lengths_[type][of_length].code(coder, header >> 3, precision_.length_bits());
+    bits.put(header_bits, length << 3 | type);
+    const ValueBlock block = precision_.unpack_header(length << 3 | type);
     type_before_ = last_type_;
-    last_type_ = static_cast<int>(type);
-    last_length_ = static_cast<int>(length);
-    return ValueBlock::unpack(length << 3 | type);
+    last_type_ = block.type;
+    last_length_ = block.length - 1;
+    return block;
   }
 
   template <class Coder, class Bits>
@@ -145,7 +146,7 @@ class ValueModel : private ValueModelSizes {
     }
   }
 
-  EndPrecision precision_;
+  PagePrecision precision_;
   ValueKind kind_;
   int last_type_ = 0, type_before_ = 0, last_length_ = 0;
   Vec3i last_end_{};

@@ -159,7 +159,7 @@ void decode(std::span<const WireSegment> segments, std::span<const std::byte> by
   if (coded != bytes.size()) throw Error("", "", "has bytes after its last segment");
 }
 
-auto value_models(EndPrecision precision, ValueKind kind) {
+auto value_models(PagePrecision precision, ValueKind kind) {
   return [=] { return std::make_unique<ValueModel>(precision, kind); };
 }
 
@@ -180,7 +180,7 @@ WireValues encode_wire_materials(const MaterialIdsView& pages) {
 }
 
 void decode_wire_values(std::span<const WireSegment> segments, std::span<const std::byte> bytes,
-                        EndPrecision precision, ValueKind kind, const PagesTarget& target) {
+                        PagePrecision precision, ValueKind kind, const PagesTarget& target) {
   decode(segments, bytes, target, value_models(precision, kind));
 }
 

@@ -49,7 +49,7 @@ struct PagesTarget {
 /// Decode pages. Throw Error unless the bytes hold exactly these pages, whatever they contain. The
 /// result may still be invalid.
 void decode_wire_values(std::span<const WireSegment> segments, std::span<const std::byte> bytes,
-                        EndPrecision precision, ValueKind kind, const PagesTarget& target);
+                        PagePrecision precision, ValueKind kind, const PagesTarget& target);
 void decode_wire_materials(std::span<const WireSegment> segments, std::span<const std::byte> bytes,
                            std::uint32_t materials, const PagesTarget& target);
 

@@ -104,6 +104,8 @@ class WireBlocks {
     this.decoder = new WireDecoder(coded);
     this.bits = bits;
     this.widths = PAGES.channelBits[precision];
+    this.unit = PAGES.units[precision];
+    this.lengthBits = PAGES.lengthBits[precision];
     this.endWidth = this.widths[0] + this.widths[1] + this.widths[2];
     this.isNormal = isNormal;
     this.type = 0;
@@ -114,17 +116,17 @@ class WireBlocks {
 
   /** Returns whether the next page is complete and has room. */
   page() {
-    const { decoder, bits, endWidth } = this, { headerBits, raw, flat } = PAGES;
+    const { decoder, bits, endWidth, unit } = this, { raw, flat } = PAGES, headerBits = PAGES.typeBits + this.lengthBits;
     for (let values = 0; values < PAGES.pageValues;) {
       if (!bits.hasRoom(headerBits)) return false;
       const type = decoder.field(TYPES_AT + ((this.type * types + this.typeBefore) << PAGES.typeBits), PAGES.typeBits);
-      const ofLength = values === 0 ? 0 : Math.min(lengthContexts - 1, 1 + (this.length >> 3));
-      const length = decoder.field(LENGTHS_AT + ((type * lengthContexts + ofLength) << lengthBits), lengthBits);
-      const count = PAGES.blockUnit * (length + 1);
+      const ofLength = values === 0 ? 0 : Math.min(lengthContexts - 1, 1 + (this.length >> 5));
+      const length = decoder.field(LENGTHS_AT + ((type * lengthContexts + ofLength) << lengthBits), this.lengthBits);
+      const count = unit * (length + 1);
       bits.put(headerBits, (length << PAGES.typeBits) | type);
       this.typeBefore = this.type;
       this.type = type;
-      this.length = length;
+      this.length = count - 1;
       values += count;
       const hasStep = type > flat && type < raw, width = hasStep ? type : type > raw ? type - 3 : 0;
       const ends = type === raw ? count * endWidth : type === flat ? endWidth : hasStep ? endWidth + stepBits : 2 * endWidth;

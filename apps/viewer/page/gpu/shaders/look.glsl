@@ -117,7 +117,8 @@ uint bitsAt(highp usampler2D words, BitPlace place, uint count) {
 }
 
 uint channelBits(uint end_code, int channel) {
-  return end_code > 0u ? end_code + 5u : channel == 1 ? 6u : 5u;
+  uint fine = end_code & 3u;
+  return fine > 0u ? fine + 5u : channel == 1 ? 6u : 5u;
 }
 uvec3 unpackEnd(uint end, uint end_code) {
   uvec3 value;
@@ -134,14 +135,16 @@ uvec3 unpackEnd(uint end, uint end_code) {
 uvec3 readValue(highp usampler2D words, highp usampler2D pages, uint end_code, uint number) {
   uint begin = texelFetch(pages, texel(number / uint(PAGES_PAGE_VALUES)), 0).x;
   uint index = number % uint(PAGES_PAGE_VALUES);
-  uint end_bits = end_code > 0u ? 3u * (end_code + 5u) : 16u;
+  uint fine = end_code & 3u, end_bits = fine > 0u ? 3u * (fine + 5u) : 16u;
+  bool any_length = end_code > 3u;
+  uint header_bits = any_length ? 11u : 9u, unit = any_length ? 1u : 4u;
   BitPlace place = BitPlace(begin >> 2u, (begin & 3u) * 8u);
   uint type = 0u;
   for (int i = 0; i < PAGES_PAGE_VALUES; ++i) {
-    uint header = bitsAt(words, place, uint(PAGES_HEADER_BITS));
+    uint header = bitsAt(words, place, header_bits);
     type = header & 7u;
-    uint len = uint(PAGES_BLOCK_UNIT) * ((header >> 3u & 63u) + 1u);
-    skipBits(place, uint(PAGES_HEADER_BITS));
+    uint len = unit * ((header >> 3u) + 1u);
+    skipBits(place, header_bits);
     if (index < len) break;
     index -= len;
     uint weight = type == 0u || type == 4u ? 0u : type < 4u ? type : type - 3u;
