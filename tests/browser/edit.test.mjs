@@ -90,7 +90,7 @@ describeInBrowsers('editing', (name, browser) => {
    */
   const tinted = (before, after, channel) => {
     const [a, b] = [pixels(before), pixels(after)], others = [0, 1, 2].filter((c) => c !== channel);
-    const standsOut = (/** @type {any} */ { data, channels }, /** @type {number} */ i) =>
+    const standsOut = (/** @type {any} */ { rows, channels }, /** @type {number} */ i) =>
       rows[i * channels + channel] - Math.max(...others.map((c) => rows[i * channels + c]));
     let count = 0;
     for (let i = 0; i < a.width * a.height; ++i) if (standsOut(b, i) > standsOut(a, i) + 40) ++count;

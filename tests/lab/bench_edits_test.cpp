@@ -36,7 +36,7 @@ TEST(BenchEdits, JsonHasTheTimesOfSessionsAndBalls) {
 
 TEST(BenchEdits, AMalformedSessionIsNamedWithItsLine) {
   const TempDir dir;
-  write_text(dir / "s.csv", "EndFrame\nEditSphere,1,2,x,5.0,true\n");
+  write_text(dir / "s.csv", "EndFrame\nEditSphere,1,2,3,x,true\n");
   const ProcessResult result =
       run_voxdag({"bench", "edits", dir / "m.vdag", "--replay", dir / "s.csv"});
   EXPECT_EQ(result.status, 1);

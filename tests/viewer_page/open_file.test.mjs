@@ -1,3 +1,4 @@
+import { File } from 'node:buffer';
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import { test } from 'node:test';

@@ -46,7 +46,7 @@ namespace detail {
 template <class Source>
 class SubtreeWalk {
  public:
-  SubtreeWalk(const SvdagView& dag, const DerivedValues& derived, const Source& source)
+  SubtreeWalk(const SvdagView& dag, DerivedValues& derived, const Source& source)
       : dag_(dag),
         derived_(derived),
         source_(source),
@@ -68,6 +68,7 @@ class SubtreeWalk {
     CellMean mean(kinds_);
     if (cell.level == derived_.index().finest_level) {
       add_voxels(cell, place, at, mean);
+      derived_.check_precision(mean.result());
     } else {
       for (std::uint32_t left = children_of(dag_, cell); left != 0; left &= left - 1) {
         const int index = std::countr_zero(left);
@@ -104,7 +105,7 @@ class SubtreeWalk {
   }
 
   const SvdagView& dag_;
-  const DerivedValues& derived_;
+  DerivedValues& derived_;
   const Source& source_;
   ValueKinds kinds_;
   typename Source::Reader reader_;
@@ -131,33 +132,24 @@ void list_tops(const SvdagView& dag, const Source& source, const NumberedCell& c
   }
 }
 
-}  // namespace detail
-
-/// Returns the attributes of the cells of `dag`, a valid DAG, down to the level `finest_level`, 0
-/// to L. Without bounds, copied values stay as they are, and new ones are rounded to the precision
-/// of the copied pages (join_page.hpp); a kind with a bound is encoded again within it. The
-/// result's errors are the differences of this encoding. The result depends on the DAG and the
-/// source alone, on any number of threads. Without voxels or kinds, it is empty. Beside the
-/// encoding of all cells and O(DAG), the time follows the cells without a run. Counts its memory in
-/// `work` until it returns, some 16 bytes for each of the 65,536 cells that a thread derives in a
-/// step. Runs on the current TBB arena. Throws OverMemory and Cancelled.
+/// Derives attributes in pages with the precision of those that are copied, or with 8 bits. Returns
+/// nothing if that is too coarse.
 template <class Source>
-DagAttributes derive_attributes(const SvdagView& dag, int finest_level, const Source& source,
-                                const CoarsenBounds& bounds = {}, Work work = {}) {
-  using detail::kStepCells;
-  const ValueKinds kinds = source.kinds();
-  if (dag.is_empty() || kinds.is_empty()) return {};
+std::optional<DagAttributes> derive_in_precision(const SvdagView& dag, int finest_level,
+                                                 const Source& source, const CoarsenBounds& bounds,
+                                                 bool has_8_bits, Work work) {
   std::vector<StoredValues> stored;
   for (std::size_t i = 0; i < source.stored_count(); ++i) stored.push_back(source.stored(i));
-  detail::DerivedValues derived(dag, finest_level, kinds, std::move(stored), bounds, work);
+  DerivedValues derived(dag, finest_level, source.kinds(), std::move(stored), bounds, has_8_bits,
+                        work);
   CountedVector<typename Source::Cell> places(work.memory);
-  detail::list_tops(dag, source, {}, {}, source.root(), derived, places);
+  list_tops(dag, source, {}, {}, source.root(), derived, places);
   struct Step {
     std::size_t top;
     std::uint64_t begin, count;  ///< A part of the run of the top cell.
   };
   CountedVector<Step> steps(work.memory);
-  CountedVector<detail::TopCell>& tops = derived.tops();
+  CountedVector<TopCell>& tops = derived.tops();
   for (std::size_t i = 0; i < tops.size(); ++i)
     for (std::uint64_t begin = 0; !tops[i].is_inner && begin < tops[i].cells; begin += kStepCells)
       steps.push_back({i, begin, std::min(kStepCells, tops[i].cells - begin)});
@@ -167,16 +159,17 @@ DagAttributes derive_attributes(const SvdagView& dag, int finest_level, const So
   struct Done {
     std::size_t step;
     CellValues values;
-    std::vector<detail::MaterialCells> materials;
+    std::vector<MaterialCells> materials;
   };
   ordered_pipeline(
       steps.size(), waiting, work,
       [&](std::size_t i) {
         const Step& step = steps[i];
-        const detail::TopCell& top = tops[step.top];
-        detail::SubtreeWalk<Source> walk(dag, derived, source);
-        detail::ValueList list;
+        const TopCell& top = tops[step.top];
         Done done{i, {}, {}};
+        if (derived.needs_8_bits()) return done;
+        SubtreeWalk<Source> walk(dag, derived, source);
+        ValueList list;
         if (top.run)
           done.values = walk.copy({top.run->stored, top.run->first + step.begin}, step.count, list);
         else
@@ -187,13 +180,36 @@ DagAttributes derive_attributes(const SvdagView& dag, int finest_level, const So
       },
       [&](const Done& done) {
         const Step& step = steps[done.step];
-        detail::TopCell& top = tops[step.top];
+        TopCell& top = tops[step.top];
         if (step.begin == 0) top.values = done.values;
         derived.add_materials(top, done.materials);
         work.report_done("attributes", top.cell.number + step.begin + step.count,
                          derived.index().cells);
       });
+  if (derived.needs_8_bits()) return std::nullopt;
   return derived.finish();
+}
+
+}  // namespace detail
+
+/// Returns the attributes of the cells of `dag`, a valid DAG, down to the level `finest_level`, 0
+/// to L. Without bounds, values of cells of level m are exact. The pages have the precision of
+/// those that are copied (join_page.hpp) if it can store the new values, else 8 bits; means of
+/// cells above are rounded to it. A kind with a bound is encoded again within it. The result's
+/// errors are the differences of this encoding. The result depends on the DAG and the source alone,
+/// on any number of threads. Without voxels or kinds, it is empty. Beside the encoding of all cells
+/// and O(DAG), the time follows the cells without a run. Counts its memory in `work` until it
+/// returns, some 16 bytes for each of the 65,536 cells that a thread derives in a step. Runs on the
+/// current TBB arena. Throws OverMemory and Cancelled.
+template <class Source>
+DagAttributes derive_attributes(const SvdagView& dag, int finest_level, const Source& source,
+                                const CoarsenBounds& bounds = {}, Work work = {}) {
+  if (dag.is_empty() || source.kinds().is_empty()) return {};
+  for (const bool has_8_bits : {false, true})
+    if (auto derived =
+            detail::derive_in_precision(dag, finest_level, source, bounds, has_8_bits, work))
+      return *std::move(derived);
+  return {};
 }
 
 }  // namespace voxdag

@@ -14,9 +14,10 @@ const ValuePagesView& normals_of(const DagAttributesView& of) { return of.normal
 
 template <class Pages>
 ValueEncoder make_encoder(std::uint64_t cells, const ValueMetric& metric, bool copies,
-                          std::span<const StoredValues> stored, const Pages& pages,
+                          std::span<const StoredValues> stored, const Pages& pages, bool has_8_bits,
                           MemoryBudget* memory) {
   if (!copies) return {cells, metric, memory};
+  if (has_8_bits) return {cells, metric, joined_precision({}), memory};
   std::vector<PagePrecision> precisions;
   for (const StoredValues& values : stored)
     if (!pages(values.attributes).is_empty())
@@ -49,7 +50,7 @@ std::uint64_t voxels_in(const SvdagView& dag, const NumberedCell& cell) {
 
 DerivedValues::DerivedValues(const SvdagView& dag, int finest_level, const ValueKinds& kinds,
                              std::vector<StoredValues> stored, const CoarsenBounds& bounds,
-                             Work work)
+                             bool has_8_bits, Work work)
     : dag_(dag),
       kinds_(kinds),
       stored_(std::move(stored)),
@@ -62,12 +63,18 @@ DerivedValues::DerivedValues(const SvdagView& dag, int finest_level, const Value
       finest_(dag, index_, work.memory),
       colors_(make_encoder(kinds.colors ? index_.cells : 0,
                            make_value_metric(kColorWeights, 255 * bounds.color_bound),
-                           copies_colors_, stored_, colors_of, work.memory)),
+                           copies_colors_, stored_, colors_of, has_8_bits, work.memory)),
       normals_(make_encoder(kinds.normals ? index_.cells : 0,
                             make_normal_metric(bounds.normal_bound_degrees), copies_normals_,
-                            stored_, normals_of, work.memory)),
+                            stored_, normals_of, has_8_bits, work.memory)),
       tops_(work.memory),
       materials_(work.memory) {}
+
+void DerivedValues::check_precision(const CellValues& values) {
+  if ((copies_colors_ && kinds_.colors && !colors_.can_store(values.color)) ||
+      (copies_normals_ && kinds_.normals && !normals_.can_store(values.normal)))
+    needs_8_bits_ = true;
+}
 
 template <class Pages, class Value>
 void DerivedValues::encode_kind(ValueEncoder& encoder, bool copies, std::uint64_t first,

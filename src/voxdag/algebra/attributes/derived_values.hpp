@@ -1,5 +1,6 @@
 #pragma once
 /// The parts of derive_attributes() that do not depend on the source.
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -90,11 +91,18 @@ struct TopCell {
 class DerivedValues {
  public:
   DerivedValues(const SvdagView& dag, int finest_level, const ValueKinds& kinds,
-                std::vector<StoredValues> stored, const CoarsenBounds& bounds, Work work);
+                std::vector<StoredValues> stored, const CoarsenBounds& bounds, bool has_8_bits,
+                Work work);
 
   const CellIndexView& index() const { return index_; }
   const FinestCells& finest_cells() const { return finest_; }
   CountedVector<TopCell>& tops() { return tops_; }
+
+  /// Notes whether rounding to the precision of the pages would change new values of a cell of the
+  /// finest level. Thread-safe.
+  void check_precision(const CellValues& values);
+  /// Returns whether it would, so that the pages must have 8 bits.
+  bool needs_8_bits() const { return needs_8_bits_; }
 
   /// Encodes colours and normals of cells from number `first` on. Thread-safe.
   void encode(std::uint64_t first, const ValueList& list);
@@ -123,6 +131,7 @@ class DerivedValues {
   CellIndexView index_;
   FinestCells finest_;
   ValueEncoder colors_, normals_;
+  std::atomic<bool> needs_8_bits_ = false;
   CountedVector<TopCell> tops_;             ///< In the order of their numbers.
   CountedVector<MaterialCells> materials_;  ///< Of the top cells that are not inner.
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "voxdag/stored/attributes/fit_block.hpp"
+
 namespace voxdag {
 
 ValueEncoder::ValueEncoder(std::uint64_t values, const ValueMetric& metric, MemoryBudget* memory)
@@ -31,6 +33,10 @@ void ValueEncoder::add(std::uint64_t first, std::span<const Value8> values) {
     first += count;
     values = values.subspan(count);
   }
+}
+
+bool ValueEncoder::can_store(Value8 value) const {
+  return precision_.unpack(pack_end(value, precision_)) == value;
 }
 
 void ValueEncoder::copy(std::uint64_t first, std::uint64_t count, const ValuePagesView& from,

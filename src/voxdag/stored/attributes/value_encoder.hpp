@@ -28,6 +28,9 @@ class ValueEncoder {
   /// Throws OverMemory.
   void add(std::uint64_t first, std::span<const Value8> values);
 
+  /// Returns whether an end can be this value.
+  bool can_store(Value8 value) const;
+
   /// Takes `count` values that are those of `from` from number `from_first` on. `from` must outlive
   /// the call of finish(). Otherwise like add().
   void copy(std::uint64_t first, std::uint64_t count, const ValuePagesView& from,
