@@ -136,6 +136,8 @@ describeInBrowsers('editing', (name, browser) => {
     // A measure takes the pointer from the brush, and ends on edited voxels.
     const edited = [await root(page), await overlay()], size = await page.evaluate(() => [innerWidth, innerHeight]);
     await page.keyboard.press('m');
+    await page.waitForSelector('.panel header button', { visible: true });
+    await closePanel(page);
     await page.mouse.click(0.4 * size[0], 0.55 * size[1]);
     await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent?.startsWith('Click the second point'));
     await page.mouse.click(0.55 * size[0], 0.55 * size[1]);
