@@ -39,7 +39,10 @@ async function sceneOfPage(html) {
     const parts = [];
     for (let at = 0; at < text.length; at += BASE64_PART)
       parts.push(Uint8Array.from(atob(text.slice(at, at + BASE64_PART)), (c) => c.charCodeAt(0)));
-    return await new Response(new Blob(parts).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+    // A Response would do, but Firefox reports its broken stream on the console.
+    const reader = new Blob(parts).stream().pipeThrough(new DecompressionStream('gzip')).getReader(), unpacked = [];
+    for (let read = await reader.read(); !read.done; read = await reader.read()) unpacked.push(read.value);
+    return await new Blob(unpacked).arrayBuffer();
   } catch {
     throw new SceneError('This page is damaged', 'Its scene cannot be decompressed: the page was cut off or changed.');
   }
