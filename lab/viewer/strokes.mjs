@@ -12,7 +12,7 @@ import path from 'node:path';
 import { launch, open } from '../../tests/browser/browser.mjs';
 import { view } from '../../tests/browser/program.mjs';
 
-const SIZE = { width: 800, height: 450 }, COLUMNS = 2;
+const SIZE = { width: 480, height: 270 }, COLUMNS = 2;
 /** Brush: values of its verb and shape, keys that change its radius, and its colour; then the way over the picture. */
 const STEPS = [
   { label: 'before' },
@@ -73,7 +73,7 @@ for (const { brush, keys = '', color, way = [], undo = 0 } of STEPS) {
   }
   await rest();
   pictures.push(await page.evaluate(async () => {
-    const blob = await /** @type {any} */ (window).voxdag.viewer.capture({ width: 800, height: 450, samples: 8 });
+    const blob = await /** @type {any} */ (window).voxdag.viewer.capture({ samples: 4 });
     return btoa(Array.from(new Uint8Array(await blob.arrayBuffer()), (byte) => String.fromCharCode(byte)).join(''));
   }));
 }
@@ -82,14 +82,14 @@ const sheet = await page.evaluate(async (images, labels, columns, { width, heigh
   const canvas = document.createElement('canvas'), context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
   canvas.width = columns * width;
   canvas.height = Math.ceil(images.length / columns) * height;
-  context.font = '20px sans-serif';
+  context.font = '14px sans-serif';
   for (const [i, image] of images.entries()) {
     const bytes = Uint8Array.from(atob(image), (c) => c.charCodeAt(0)), x = (i % columns) * width, y = Math.floor(i / columns) * height;
     context.drawImage(await createImageBitmap(new Blob([bytes], { type: 'image/png' })), x, y);
     context.fillStyle = '#000a';
-    context.fillRect(x, y + height - 34, context.measureText(labels[i]).width + 24, 34);
+    context.fillRect(x, y + height - 24, context.measureText(labels[i]).width + 16, 24);
     context.fillStyle = '#fff';
-    context.fillText(labels[i], x + 12, y + height - 11);
+    context.fillText(labels[i], x + 8, y + height - 8);
   }
   return canvas.toDataURL('image/png').split(',')[1];
 }, pictures, STEPS.map((step) => step.label), COLUMNS, SIZE);

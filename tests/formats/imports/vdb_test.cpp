@@ -121,7 +121,8 @@ TEST_F(Vdb, OtherTransformsAreWarnedOf) {
   EXPECT_TRUE(has(warning_of(matrix), "boxes of 1 x 3 x 1"));
   matrix = openvdb::Mat4R(0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
   EXPECT_EQ(warning_of(matrix), "") << "quarter turns are exact";
-  matrix = openvdb::Mat4R(0.8, 0.6, 0, 0, -0.6, 0.8, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
+  matrix = openvdb::Mat4R(0.8, 0.6, 0.0, 0.0, -0.6, 0.8, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0,
+                          0.0, 1.0);
   EXPECT_TRUE(has(warning_of(matrix), "turns or shears"));
 }
 
