@@ -28,8 +28,11 @@ double milliseconds_of(const auto& body) {
 /// One editable scene, and what its edits cost.
 class Editor {
  public:
-  Editor(const DagModel& model, std::size_t history, MemoryBudget& memory, Progress& progress)
+  /// Takes places from copies of `places`, which cost a walk over the scene.
+  Editor(const DagModel& model, const ReplayPlaces& places, std::size_t history,
+         MemoryBudget& memory, Progress& progress)
       : progress_(progress),
+        places_(places),
         has_colors_(model.attributes().has_colors()),
         dag_(ColoredDagView{model.view(), model.attributes()}, {.history = history},
              {&memory, &progress}) {}
@@ -58,7 +61,7 @@ class Editor {
     EditTimes times;
     times.name = name;
     const std::uint64_t nodes = dag_.nodes().added_nodes(), bytes = bytes_now();
-    ReplayPlaces places(dag_.snapshot().view());
+    ReplayPlaces places = places_;
     body(places, times);
     times.new_nodes = dag_.nodes().added_nodes() - nodes;
     times.new_bytes = bytes_now() > bytes ? bytes_now() - bytes : 0;
@@ -74,16 +77,18 @@ class Editor {
 
  private:
   Progress& progress_;
+  const ReplayPlaces& places_;
   bool has_colors_;
   EditableDag dag_;
 };
 
-LongSession run_session(const DagModel& model, std::uint32_t edits, Progress& progress) {
+LongSession run_session(const DagModel& model, const ReplayPlaces& first, std::uint32_t edits,
+                        Progress& progress) {
   LongSession session;
   session.times.name = fmt::format("{} edits", edits);
   MemoryBudget memory;
-  Editor editor(model, LongSession::kHistory, memory, progress);
-  ReplayPlaces places(model.view());
+  Editor editor(model, first, LongSession::kHistory, memory, progress);
+  ReplayPlaces places = first;
   std::mt19937 random(1);
   for (std::uint32_t i = 0; i < edits; ++i) {
     editor.edit(places, {4 + static_cast<double>(random() % 44), random() % 2 == 0}, session.times);
@@ -122,9 +127,11 @@ EditsRun run_scene(const std::string& scene, const EditsPlan& plan,
   run.has_colors = model->attributes().has_colors();
   for (const std::uint64_t count : count_svdag(model->view()).dag_nodes_per_level)
     run.base_nodes += count;
+  const ReplayPlaces first(model->view());
   MemoryBudget memory;
   std::optional<Editor> editor;
-  run.open_seconds = milliseconds_of([&] { editor.emplace(*model, 0, memory, progress); }) / 1000;
+  run.open_seconds =
+      milliseconds_of([&] { editor.emplace(*model, first, 0, memory, progress); }) / 1000;
   run.memory_bytes = memory.used();
   for (std::size_t i = 0; i < replays.size(); ++i)
     run.times.push_back(editor->measure(std::filesystem::path(plan.replays[i]).filename(),
@@ -143,7 +150,7 @@ EditsRun run_scene(const std::string& scene, const EditsPlan& plan,
                                           }));
   // An edit that is saved.
   EditTimes unused;
-  ReplayPlaces places(model->view());
+  ReplayPlaces places = first;
   editor->edit(places, {20, false}, unused);
   run.save_seconds = milliseconds_of([&] {
                        const EditSnapshot snapshot = editor->dag().snapshot();
@@ -152,12 +159,12 @@ EditsRun run_scene(const std::string& scene, const EditsPlan& plan,
                      }) /
                      1000;
   editor.reset();
-  if (plan.session > 0) run.session = run_session(*model, plan.session, progress);
+  if (plan.session > 0) run.session = run_session(*model, first, plan.session, progress);
   if (plan.rewrites) {
     Svdag nothing;
     nothing.levels = run.levels;
     EditableDag empty(nothing.view());
-    ReplayPlaces same(model->view());
+    ReplayPlaces same = first;
     empty.add(same.place({20, false}, model->view()));
     const Svdag ball = empty.snapshot().svdag();
     run.rewrite_milliseconds = milliseconds_of(
