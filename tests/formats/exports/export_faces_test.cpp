@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <map>
 #include <sstream>
 
 #include "colored_scene.hpp"
+#include "face_areas.hpp"
 #include "read_back.hpp"
 #include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
@@ -16,52 +16,11 @@
 #include "voxdag/formats/exports/export_ply.hpp"
 #include "voxdag/formats/exports/faces/manifold_faces.hpp"
 #include "voxdag/formats/exports/faces/rectangles.hpp"
-#include "voxdag/formats/readers/mesh_chunks.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/image/decode.hpp"
 
 namespace voxdag {
 namespace {
-
-/// A triangle or quad: corners in voxel coordinates, and a colour (0 to 65535, linear).
-struct Polygon {
-  std::vector<Vec3d> corners;
-  Vec3i color{};
-};
-
-/// Returns all polygons' areas by the place of the plane and its direction, and checks that the
-/// polygons agree with the rectangles of the scene.
-using PlaneAreas = std::map<std::tuple<int, int, int>, double>;
-
-PlaneAreas areas_of(const std::vector<Polygon>& polygons) {
-  PlaneAreas areas;
-  for (const Polygon& p : polygons) {
-    Vec3d normal{};
-    for (std::size_t i = 1; i + 1 < p.corners.size(); ++i)
-      normal = normal + cross(p.corners[i] - p.corners[0], p.corners[i + 1] - p.corners[0]) * 0.5;
-    for (int axis = 0; axis < 3; ++axis)
-      if (normal[axis] != 0)
-        areas[{axis, normal[axis] > 0 ? 1 : -1,
-               static_cast<int>(std::lround(p.corners[0][axis]))}] += std::abs(normal[axis]);
-  }
-  return areas;
-}
-
-PlaneAreas areas_of(const VoxelSet& voxels, const Box3i& window) {
-  PlaneAreas areas;
-  for_each_rectangle(voxels, window, nullptr, false, nullptr, [&](const FaceRectangle& r) {
-    areas[{face_axis(r.face), dot(face_normal(r.face), Vec3i{1, 1, 1}), r.lo[face_axis(r.face)]}] +=
-        1;
-  });
-  return areas;
-}
-
-template <class T>
-T read_at(const std::string& bytes, std::size_t at) {
-  T value;
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
-}
 
 struct Glb {
   nlohmann::json json;
@@ -89,8 +48,8 @@ struct Glb {
            i * view.value("byteStride", size);
   }
   /// Returns the triangles with coordinates in the world.
-  std::vector<Polygon> triangles() const {
-    std::vector<Polygon> result;
+  std::vector<ReadPolygon> triangles() const {
+    std::vector<ReadPolygon> result;
     const auto& node = json["nodes"][0];
     Vec3d scale{1, 1, 1}, translation{};
     for (int axis = 0; axis < 3 && node.contains("scale"); ++axis) {
@@ -118,8 +77,8 @@ struct Glb {
 };
 
 /// Changes coordinates to voxels of the grid.
-std::vector<Polygon> in_grid(std::vector<Polygon> polygons, const Grid& grid) {
-  for (Polygon& polygon : polygons)
+std::vector<ReadPolygon> in_grid(std::vector<ReadPolygon> polygons, const Grid& grid) {
+  for (ReadPolygon& polygon : polygons)
     for (Vec3d& corner : polygon.corners) corner = (corner - grid.origin) * (1 / grid.voxel_size);
   return polygons;
 }
@@ -147,7 +106,7 @@ TEST(ExportGlb, ColorsAreThoseOfTheVoxelsInLinearLight) {
   const ColoredScene scene(6);
   export_glb(dir / "v.glb", scene.view(), scene.grid, scene.options);
   std::map<std::array<int, 3>, double> found, expected;
-  for (const Polygon& t : in_grid(Glb(read_text(dir / "v.glb")).triangles(), scene.grid))
+  for (const ReadPolygon& t : in_grid(Glb(read_text(dir / "v.glb")).triangles(), scene.grid))
     found[{t.color.x, t.color.y, t.color.z}] +=
         length(cross(t.corners[1] - t.corners[0], t.corners[2] - t.corners[0])) / 2;
   for_each_rectangle(scene.view(), whole_grid(6), nullptr, false, nullptr,
@@ -172,8 +131,8 @@ TEST(ExportGlb, AnEmptySceneHasNoMesh) {
   EXPECT_TRUE(glb.data.empty());
 }
 
-std::vector<Polygon> read_obj(const std::string& text, const Grid& grid) {
-  std::vector<Polygon> polygons;
+std::vector<ReadPolygon> read_obj(const std::string& text, const Grid& grid) {
+  std::vector<ReadPolygon> polygons;
   std::vector<std::pair<Vec3d, Vec3d>> corners;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -185,7 +144,7 @@ std::vector<Polygon> read_obj(const std::string& text, const Grid& grid) {
       words >> p.x >> p.y >> p.z >> color.x >> color.y >> color.z;
       corners.emplace_back((p - grid.origin) * (1 / grid.voxel_size), color);
     } else if (kind == "f") {
-      Polygon polygon;
+      ReadPolygon polygon;
       for (std::size_t index = 0; words >> index;) {
         const auto& [place, color] = corners.at(index - 1);
         polygon.corners.push_back(place);
@@ -204,10 +163,10 @@ TEST(ExportObj, TrianglesAreTheOuterFacesInTheWorld) {
   ExportOptions options = scene.options;
   options.window = Box3i{{3, 1, 6}, {64, 62, 33}};
   export_obj(dir / "v.obj", scene.view(), scene.grid, options);
-  const std::vector<Polygon> triangles = read_obj(read_text(dir / "v.obj"), scene.grid);
+  const std::vector<ReadPolygon> triangles = read_obj(read_text(dir / "v.obj"), scene.grid);
   EXPECT_EQ(areas_of(triangles), areas_of(scene.view(), *options.window));
   std::set<std::array<int, 3>> colors, expected;
-  for (const Polygon& t : triangles) {
+  for (const ReadPolygon& t : triangles) {
     EXPECT_EQ(t.corners.size(), 3u);
     colors.insert({t.color.x, t.color.y, t.color.z});
   }
@@ -216,61 +175,6 @@ TEST(ExportObj, TrianglesAreTheOuterFacesInTheWorld) {
     expected.insert({color.x, color.y, color.z});
   }
   for (const auto& color : colors) EXPECT_TRUE(expected.contains(color));
-}
-
-TEST(ExportStl, TheMeshIsClosed) {
-  const TempDir dir;
-  const ExportedScene scene(5, 3000);
-  export_stl(dir / "v.stl", scene.view(), scene.grid);
-  const std::string bytes = read_text(dir / "v.stl");
-  const auto count = read_at<std::uint32_t>(bytes, 80);
-  ASSERT_EQ(bytes.size(), 84 + std::size_t{50} * count);
-  EXPECT_FALSE(bytes.starts_with("solid"));
-  std::vector<Polygon> triangles;
-  using Corner = std::array<float, 3>;
-  std::map<std::pair<Corner, Corner>, int> edges;
-  for (std::size_t i = 0; i < count; ++i) {
-    Polygon triangle;
-    std::array<Corner, 3> corners;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto p = read_at<Vec3f>(bytes, 84 + 50 * i + 12 * (c + 1));
-      corners[c] = {p.x, p.y, p.z};
-      triangle.corners.push_back((Vec3d(p) - scene.grid.origin) * 4.0);
-    }
-    for (std::size_t c = 0; c < 3; ++c) {
-      ++edges[{corners[c], corners[(c + 1) % 3]}];
-      --edges[{corners[(c + 1) % 3], corners[c]}];
-    }
-    const Vec3d normal =
-        cross(triangle.corners[1] - triangle.corners[0], triangle.corners[2] - triangle.corners[0]);
-    EXPECT_EQ(Vec3f(normal), read_at<Vec3f>(bytes, 84 + 50 * i));
-    triangles.push_back(triangle);
-  }
-  for (const auto& [edge, balance] : edges) EXPECT_EQ(balance, 0);
-  EXPECT_EQ(areas_of(triangles), areas_of(scene.view(), whole_grid(5)));
-}
-
-TEST(ExportStl, SmoothTrianglesHaveNormalsOfTheirOwn) {
-  const TempDir dir;
-  const ExportedScene scene(5, 3000);
-  ExportOptions options;
-  options.faces = FaceMesh::kSmooth;
-  export_stl(dir / "v.stl", scene.view(), scene.grid, options);
-  const std::string bytes = read_text(dir / "v.stl");
-  std::map<std::pair<std::array<float, 3>, std::array<float, 3>>, int> edges;
-  for (std::size_t at = 84; at < bytes.size(); at += 50) {
-    const auto corners = read_at<std::array<Vec3f, 3>>(bytes, at + 12);
-    const Vec3d normal =
-        cross(Vec3d(corners[1]) - Vec3d(corners[0]), Vec3d(corners[2]) - Vec3d(corners[0]));
-    // Coordinates are rounded to 2^-19 of a voxel.
-    EXPECT_LT(length(normalized(normal) - Vec3d(read_at<Vec3f>(bytes, at))), 1e-4);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Vec3f a = corners[c], b = corners[(c + 1) % 3];
-      ++edges[{{a.x, a.y, a.z}, {b.x, b.y, b.z}}];
-      --edges[{{b.x, b.y, b.z}, {a.x, a.y, a.z}}];
-    }
-  }
-  for (const auto& [edge, balance] : edges) EXPECT_EQ(balance, 0);
 }
 
 TEST(FaceMeshes, SmoothFilesHaveTheSameSurface) {
@@ -292,54 +196,6 @@ TEST(FaceMeshes, SmoothFilesHaveTheSameSurface) {
       for (std::size_t c = 0; c < 3; ++c)
         EXPECT_EQ(mesh.vertices[mesh.triangles[i][c]], stl.vertices[stl.triangles[i][c]]);
   }
-}
-
-/// Returns the triangles of an STL file, as written.
-std::vector<std::array<Vec3f, 3>> stl_triangles(const std::string& bytes) {
-  std::vector<std::array<Vec3f, 3>> triangles(read_at<std::uint32_t>(bytes, 80));
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    triangles[i] = read_at<std::array<Vec3f, 3>>(bytes, 84 + 50 * i + 12);
-  return triangles;
-}
-
-TEST(ExportStl, AFarGridHasALocalOriginAndTheOffsetIsSaid) {
-  const TempDir dir;
-  ExportedScene scene(6, 100);
-  std::vector<std::string> notes;
-  ExportOptions options;
-  options.notes = &notes;
-  options.window = kWindow;
-  scene.grid.origin = {0, 0, 0};
-  export_stl(dir / "near.stl", scene.view(), scene.grid, options);
-  EXPECT_TRUE(notes.empty());
-  EXPECT_EQ(dir.count(), 1);
-  scene.grid.origin.x = 1e6;
-  export_stl(dir / "far.stl", scene.view(), scene.grid, options);
-  ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("offset 1000000.75 0.25 1.5"), std::string::npos) << notes[0];
-  EXPECT_EQ(placement_of(dir / "far.stl")["offset"], nlohmann::json({1000000.75, 0.25, 1.5}));
-  const auto near = stl_triangles(read_text(dir / "near.stl"));
-  const auto far = stl_triangles(read_text(dir / "far.stl"));
-  ASSERT_EQ(near.size(), far.size());
-  for (std::size_t i = 0; i < near.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_EQ(far[i][c] + Vec3f(0.75f, 0.25f, 1.5f), near[i][c]);
-  // The reader adds the offset.
-  EXPECT_EQ(read_mesh(dir / "near.stl").origin, (Vec3d{}));
-  EXPECT_EQ(read_mesh(dir / "far.stl").origin, (Vec3d{1000000.75, 0.25, 1.5}));
-  EXPECT_EQ(open_mesh_chunks(dir / "far.stl", {}, 1 << 20), nullptr);
-  EXPECT_NE(open_mesh_chunks(dir / "near.stl", {}, 1 << 20), nullptr);
-  // Another export of this name needs no offset.
-  std::filesystem::rename(dir / "far.stl.json", dir / "near.stl.json");
-  scene.grid.origin.x = 0;
-  export_stl(dir / "near.stl", scene.view(), scene.grid, options);
-  EXPECT_FALSE(std::filesystem::exists(dir / "near.stl.json"));
-  // Voxels that are too small for floats are refused.
-  scene.grid.voxel_size = 1e-300;
-  EXPECT_NE(error_of([&] {
-              export_stl(dir / "small.stl", scene.view(), scene.grid);
-            }).find("cannot hold voxels of this size"),
-            std::string::npos);
 }
 
 TEST(FaceMeshes, ATextureHasTheColorsOfTheVoxels) {
