@@ -16,9 +16,6 @@ inline std::uint64_t hash_block(std::uint64_t voxels) {
   return hash_words(words, 2);
 }
 
-/// Returns the number of words of a node above the leaf blocks.
-inline int words_of_node(const std::uint32_t* node) { return 1 + popcount(child_mask(node)); }
-
 /// A hash table of nodes. Their numbers are word indices, or indices of leaf blocks. Thread-safe.
 class BaseNumbers {
  public:

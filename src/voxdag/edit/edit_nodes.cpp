@@ -167,33 +167,19 @@ void EditNodes::FreeRuns::add(Run run) {
   count += run.end - run.next;
 }
 
-EditNodes::Run EditNodes::FreeRuns::take(std::uint32_t least) {
+EditNodes::Run EditNodes::FreeRuns::take(std::uint32_t least, std::uint32_t most, Run& rest) {
   for (std::size_t size = least; size < lists.size(); ++size) {
     if (lists[size].empty()) continue;
-    const Run run = lists[size].back();
+    Run run = lists[size].back();
     lists[size].pop_back();
     count -= run.end - run.next;
+    if (run.end - run.next > most) {
+      rest = {run.next + most, run.end};
+      run.end = rest.next;
+    }
     return run;
   }
   return {};
-}
-
-EditNodes::Run EditNodes::reuse_words(std::uint32_t least, std::uint32_t most) {
-  Run run = free_words_.take(least);
-  if (run.end - run.next > most) {
-    free_words({run.next + most, run.end});
-    run.end = run.next + most;
-  }
-  return run;
-}
-
-EditNodes::Run EditNodes::reuse_blocks(std::uint32_t most) {
-  Run run = free_blocks_.take(1);
-  if (run.end - run.next > most) {
-    free_blocks_.add({run.next + most, run.end});
-    run.end = run.next + most;
-  }
-  return run;
 }
 
 void EditNodes::free_words(Run run) {
@@ -205,7 +191,9 @@ void EditNodes::free_words(Run run) {
 void EditNodes::take_words(Run& run, std::uint32_t count) {
   give_back_words(run);
   const std::lock_guard guard(mutex_);
-  run = reuse_words(count, kRunWords);
+  Run rest;
+  run = free_words_.take(count, kRunWords, rest);
+  free_words(rest);
   if (run.next == run.end) {
     if (words_end_ + kRunWords > kMaxPlainWords)
       throw Error(
@@ -220,7 +208,9 @@ void EditNodes::take_words(Run& run, std::uint32_t count) {
 
 void EditNodes::take_blocks(Run& run) {
   const std::lock_guard guard(mutex_);
-  run = reuse_blocks(kRunBlocks);
+  Run rest;
+  run = free_blocks_.take(1, kRunBlocks, rest);
+  free_blocks_.add(rest);
   if (run.next == run.end) {
     if (blocks_end_ + kRunBlocks > kMaxBlocks)
       throw Error("the DAG is too large: it has more leaf blocks than 32-bit pointers can address");

@@ -98,16 +98,14 @@ class EditNodes {
     std::uint64_t count = 0;  ///< Words or blocks.
 
     void add(Run run);
-    /// Takes a run of at least `least` words or blocks, or one of none.
-    Run take(std::uint32_t least);
+    /// Takes a run of `least` to `most` words or blocks, or one of none. Sets `rest` to what is
+    /// left of a longer one.
+    Run take(std::uint32_t least, std::uint32_t most, Run& rest);
   };
 
   /// Gives a writer a run of at least `count` words, or of at least one block.
   void take_words(Run& run, std::uint32_t count);
   void take_blocks(Run& run);
-  /// Takes the first unused run of at least `least` words or blocks, and at most `most` of it.
-  Run reuse_words(std::uint32_t least, std::uint32_t most);
-  Run reuse_blocks(std::uint32_t most);
   /// Writes the length of an unused run of words into it, and adds it to the list.
   void free_words(Run run);
   /// Takes back what is left of a run.

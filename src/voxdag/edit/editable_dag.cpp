@@ -6,12 +6,9 @@
 #include <unordered_map>
 #include <utility>
 
-#include "voxdag/algebra/attributes/derive_attributes.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/shift.hpp"
-#include "voxdag/edit/canonical_copy.hpp"
-#include "voxdag/edit/edited_source.hpp"
 #include "voxdag/edit/filter_ball.hpp"
 #include "voxdag/edit/shape_edit.hpp"
 #include "voxdag/edit/stamp_edit.hpp"
@@ -76,19 +73,6 @@ Vec3d middle_of_cell(Vec3i cell, int level, int levels) {
 }
 
 }  // namespace
-
-Svdag EditSnapshot::svdag(Work work) const {
-  if (version_->nodes->is_minimal()) return canonical_copy(view(), version_->words_end, work);
-  return crop(view(), whole_grid(view().levels), work);
-}
-
-DagAttributes EditSnapshot::attributes(const SvdagView& dag, const CoarsenBounds& bounds,
-                                       Work work) const {
-  const ColoredDagView& values = version_->values;
-  const EditedSource source(*version_->nodes, *version_->of_values, version_->root, values.overlays,
-                            values.attributes);
-  return derive_attributes(dag, values.attributes.index.finest_level, source, bounds, work);
-}
 
 EditableDag::EditableDag(const ColoredDagView& base, EditOptions options, Work work)
     : work_(work),

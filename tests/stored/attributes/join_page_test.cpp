@@ -22,7 +22,7 @@ struct Origin {
 
 /// Encodes values in runs of copied and of new ones, in a random order.
 ValuePages encode(const std::vector<Origin>& origins, const ValuePagesView& from,
-                  PagePrecision precision, std::mt19937& rng) {
+                  PagePrecision precision, std::mt19937& rng, bool* rounds_copies = nullptr) {
   ValueEncoder encoder(origins.size(), make_value_metric(kWeights, 0), precision, nullptr);
   std::vector<std::pair<std::size_t, std::size_t>> runs;
   for (std::size_t i = 0; i < origins.size(); ++i) {
@@ -43,6 +43,7 @@ ValuePages encode(const std::vector<Origin>& origins, const ValuePagesView& from
     for (std::size_t i = 0; i < count; ++i) values.push_back(origins[first + i].value);
     encoder.add(first, values);
   }
+  if (rounds_copies != nullptr) *rounds_copies = encoder.rounds_copies();
   return encoder.finish();
 }
 
@@ -131,13 +132,18 @@ TEST(JoinPage, StoresEachValueWhereThePageWouldBeTooLong) {
   std::vector<Origin> origins;
   for (std::int64_t i = 0; i < 10000; ++i)
     origins.push_back({static_cast<std::int64_t>(rng() % 20000), {}});
-  const PagePrecision precision = joined_precision({{source.precision}});
-  const ValuePages pages = encode(origins, source.view(), precision, rng);
-  validate_value_pages(pages.view());
-  for (std::size_t i = 0; i < origins.size(); ++i) {
-    const Value8 value = read_value(source.view(), static_cast<std::uint64_t>(origins[i].number));
-    const Value8 stored = read_value(pages.view(), i);
-    ASSERT_TRUE(stored == value || stored == rounded(value, precision)) << i;
+  for (const int code : {source.precision.code, 3}) {
+    const PagePrecision precision = joined_precision({{{code}}});
+    const bool is_exact = code == 3;
+    bool rounds_copies = is_exact;
+    const ValuePages pages = encode(origins, source.view(), precision, rng, &rounds_copies);
+    EXPECT_NE(rounds_copies, is_exact);
+    validate_value_pages(pages.view());
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+      const Value8 value = read_value(source.view(), static_cast<std::uint64_t>(origins[i].number));
+      const Value8 stored = read_value(pages.view(), i);
+      ASSERT_TRUE(stored == value || (!is_exact && stored == rounded(value, precision))) << i;
+    }
   }
 }
 

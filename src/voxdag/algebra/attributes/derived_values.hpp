@@ -98,11 +98,13 @@ class DerivedValues {
   const FinestCells& finest_cells() const { return finest_; }
   CountedVector<TopCell>& tops() { return tops_; }
 
-  /// Notes whether rounding to the precision of the pages would change new values of a cell of the
-  /// finest level. Thread-safe.
+  /// Notes whether the precision of the pages is too coarse for new values of a cell of the finest
+  /// level. Thread-safe.
   void check_precision(const CellValues& values);
-  /// Returns whether it would, so that the pages must have 8 bits.
-  bool needs_8_bits() const { return needs_8_bits_; }
+  /// Returns whether it is, for new or copied values.
+  bool needs_8_bits() const {
+    return needs_8_bits_ || colors_.rounds_copies() || normals_.rounds_copies();
+  }
 
   /// Encodes colours and normals of cells from number `first` on. Thread-safe.
   void encode(std::uint64_t first, const ValueList& list);

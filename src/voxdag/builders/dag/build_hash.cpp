@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "voxdag/builders/dag/build_methods.hpp"
-#include "voxdag/builders/dag/canonical_order.hpp"
 #include "voxdag/builders/dag/join_cells.hpp"
 #include "voxdag/builders/dag/stop_watch.hpp"
 #include "voxdag/builders/dag/subvolume.hpp"
 #include "voxdag/builders/voxelize/duplicate_triangles.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/stored/svdag/canonical_order.hpp"
 
 namespace voxdag {
 namespace {
@@ -41,7 +41,15 @@ struct StoreSource {
   StoreSource(Stores& all, MemoryBudget& budget) : stores(all), forwards(&budget) {
     forwards.resize(stores.back()->end_id() / 2);
   }
-  std::uint32_t* words(int level, NodeId id) { return stores[level]->words(id); }
+  const std::uint32_t* words(int level, NodeId id) const { return stores[level]->words(id); }
+  std::uint64_t leaf_block(NodeId id) const {
+    const std::uint32_t* const words = stores.back()->words(id);
+    return words[0] | static_cast<std::uint64_t>(words[1]) << 32;
+  }
+  std::uint32_t& forward(int level, NodeId id) {
+    const bool is_leaf = level + 1 == static_cast<int>(stores.size());
+    return is_leaf ? forwards[id / 2] : stores[level]->words(id)[0];
+  }
   void prefetch(int level, NodeId id) const {
     stores[level]->prefetch_words(id);
     if (level + 1 == static_cast<int>(stores.size()) && id / 2 < forwards.size())
@@ -54,7 +62,6 @@ struct StoreSource {
     return words;
   }
   std::uint64_t leaf_blocks() const { return stores.back()->node_count(); }
-  std::uint32_t& forward(NodeId leaf) { return forwards[leaf / 2]; }
 };
 
 void measure(const Stores& stores, StageBytes& bytes) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "voxdag/builders/dag/build_methods.hpp"
-#include "voxdag/builders/dag/canonical_order.hpp"
 #include "voxdag/builders/dag/join_cells.hpp"
 #include "voxdag/builders/dag/sort_tree.hpp"
 #include "voxdag/builders/dag/stop_watch.hpp"
@@ -17,6 +16,7 @@
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/stored/svdag/canonical_order.hpp"
 
 namespace voxdag {
 namespace {
@@ -103,12 +103,19 @@ class WordSource {
       node_words_ += words_[level].size();
   }
 
-  std::uint32_t* words(int level, std::uint32_t id) { return words_[level].data() + id; }
+  const std::uint32_t* words(int level, std::uint32_t id) const {
+    return words_[level].data() + id;
+  }
+  std::uint64_t leaf_block(std::uint32_t id) const {
+    return words_.back()[id] | static_cast<std::uint64_t>(words_.back()[id + 1]) << 32;
+  }
   void prefetch(int, std::uint32_t) const {}
   void release(int level) { words_[level].release(); }
   std::uint64_t node_words() const { return node_words_; }
   std::uint64_t leaf_blocks() const { return forwards_.size(); }
-  std::uint32_t& forward(std::uint32_t leaf) { return forwards_[leaf / 2]; }
+  std::uint32_t& forward(int level, std::uint32_t id) {
+    return level + 1 == static_cast<int>(words_.size()) ? forwards_[id / 2] : words_[level][id];
+  }
 
  private:
   std::vector<PageVector<std::uint32_t>> words_;

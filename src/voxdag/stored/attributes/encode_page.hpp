@@ -40,6 +40,7 @@ struct EncodedPage {
   std::array<std::uint64_t, kMaxPageWords> words{};  ///< From bit `bits` on, all bits are zero.
   int bits = 0;
   ValueErrors errors;
+  bool rounds_copies = false;  ///< Copied values are rounded: see join_page().
 };
 
 /// Compresses the values. The error of each is at most the bound. EncodedPage::errors has the

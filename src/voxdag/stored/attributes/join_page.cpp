@@ -35,8 +35,11 @@ class PageJoiner {
   EncodedPage finish() {
     int bits = 0;
     for (const Block& block : blocks_) bits += precision_.bits_of(block.block);
-    if (bits > 64 * kMaxPageWords) store_each();
     EncodedPage page;
+    if (bits > 64 * kMaxPageWords) {
+      store_each();
+      page.rounds_copies = precision_.channel_bits(0) < 8;
+    }
     const auto add = [&](std::uint64_t value, int width) {
       write_bits(page.words.data(), static_cast<std::uint64_t>(page.bits), width, value);
       page.bits += width;

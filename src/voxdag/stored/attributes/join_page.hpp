@@ -21,11 +21,12 @@ struct CopiedValues {
 /// are equal, else 8 bits; with blocks of any length.
 PagePrecision joined_precision(std::span<const PagePrecision> from);
 
-/// Compresses the values of a page. Those of `copies`, in order and disjoint, stay as they are; of
-/// `values`, which may be empty if all are copied, only the others count. They are rounded to
+/// Compresses the values of a page. Those of `copies`, in order and disjoint, stay as they are. Of
+/// `values`, which may be empty if all are copied, only the others count: they are rounded to
 /// `precision`, which is joined_precision() of all sources, and EncodedPage::errors has their
-/// differences. A page that would outgrow kMaxPageWords stores each value by itself, rounded to
-/// `precision`. The last of the `given` values fills the page up.
+/// differences. A page that would outgrow kMaxPageWords stores each value by itself; unless
+/// `precision` has 8 bits, that rounds copied values, too, and sets EncodedPage::rounds_copies. The
+/// last of the `given` values fills the page up.
 EncodedPage join_page(std::span<const Value8> values, std::span<const CopiedValues> copies,
                       int given, const ValueMetric& metric, PagePrecision precision);
 

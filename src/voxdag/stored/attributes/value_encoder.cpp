@@ -95,6 +95,7 @@ void ValueEncoder::keep(std::uint64_t page, const EncodedPage& encoded) {
   chunk.insert(chunk.end(), encoded.words.begin(),
                encoded.words.begin() + static_cast<std::ptrdiff_t>(words));
   errors_ += encoded.errors;
+  if (encoded.rounds_copies) rounds_copies_ = true;
 }
 
 ValuePages ValueEncoder::finish() {

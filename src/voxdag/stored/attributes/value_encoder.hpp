@@ -1,5 +1,6 @@
 #pragma once
 /// Compresses values that many threads give in ranges, in any order.
+#include <atomic>
 #include <functional>
 #include <mutex>
 #include <span>
@@ -28,6 +29,8 @@ class ValueEncoder {
   /// Throws OverMemory.
   void add(std::uint64_t first, std::span<const Value8> values);
 
+  /// Returns whether a page rounds values that were copied (join_page.hpp).
+  bool rounds_copies() const { return rounds_copies_; }
   /// Returns whether an end can be this value.
   bool can_store(Value8 value) const;
 
@@ -76,6 +79,7 @@ class ValueEncoder {
   CountedVector<PagePlace> places_;
   std::vector<CountedVector<std::uint64_t>> chunks_;
   ValueErrors errors_;
+  std::atomic<bool> rounds_copies_ = false;
 };
 
 }  // namespace voxdag

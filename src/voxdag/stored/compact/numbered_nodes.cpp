@@ -29,7 +29,7 @@ NumberedNodes::NumberedNodes(const SvdagView& dag, Work work)
 
     std::uint64_t nodes = 0, shared = 0;
     for (std::uint64_t at = begin; at < end;
-         at += static_cast<unsigned>(1 + popcount(dag.nodes[at]))) {
+         at += static_cast<unsigned>(words_of_node(dag.nodes + at))) {
       ++nodes;
       shared += tags_[at] > 1 ? 1 : 0;
     }
@@ -41,7 +41,7 @@ NumberedNodes::NumberedNodes(const SvdagView& dag, Work work)
     order.reserve(shared);
     if (level <= unit_level()) nodes_[index(level)].reserve(nodes);
     for (std::uint64_t at = begin; at < end;
-         at += static_cast<unsigned>(1 + popcount(dag.nodes[at]))) {
+         at += static_cast<unsigned>(words_of_node(dag.nodes + at))) {
       work.poll_seldom(at);
       const auto word = static_cast<std::uint32_t>(at);
       if (tags_[at] > 1) order.push_back(word);

@@ -5,6 +5,7 @@
 /// are copied breadth-first, level by level, and a node is placed when it is first met. In each
 /// level this gives the order in which a depth-first walk first visits the nodes, because both
 /// orders sort the nodes by their least Morton path.
+#include <algorithm>
 #include <cstdint>
 
 #include "voxdag/core/error.hpp"
@@ -15,9 +16,11 @@
 namespace voxdag {
 
 /// `source` has
-///   std::uint32_t* words(level, id)          returns the words of a node; they may be overwritten
-///   std::uint32_t& forward(leaf_id)          returns a word for each leaf block, 0 at first
-///   void prefetch(level, id)                 starts loading both; ids may be any numbers
+///   const std::uint32_t* words(level, id)    returns the words of a node above the leaf blocks
+///   std::uint64_t leaf_block(id)
+///   std::uint32_t& forward(level, id)        returns a word to write to, at first below 256, for
+///                                            each node and leaf block: the mask of a node will do
+///   void prefetch(level, id)                 starts loading them; ids may be any numbers
 ///   void release(level)                      frees a level that is not needed any more
 ///   std::uint64_t node_words(), leaf_blocks()  return upper bounds for what is reachable
 /// The children of level l-1 are ids of level l. `root` is of level 0. `work` counts the new DAG
@@ -25,13 +28,12 @@ namespace voxdag {
 /// Cancelled.
 template <class Source>
 Svdag canonical_order(Source& source, int levels, std::uint32_t root, Work work) {
-  // The mask word of a placed node becomes its new place plus kPlaced, which is greater than any
-  // mask.
+  // The word of a placed node becomes its new place plus kPlaced, which is greater than any mask.
   constexpr std::uint64_t kPlaced = 256;
   Svdag dag;
   dag.levels = levels;
   const int leaf_level = levels - 2;
-  if (source.node_words() + kPlaced > 0xFFFFFFFFull)
+  if (std::max(source.node_words(), source.leaf_blocks()) + kPlaced > 0xFFFFFFFFull)
     throw Error("the DAG is too large: its nodes have more words than 32-bit pointers can address");
   const MemoryReservation copy(work.memory, source.node_words() * sizeof(std::uint32_t) +
                                                 source.leaf_blocks() * sizeof(std::uint64_t));
@@ -39,22 +41,22 @@ Svdag canonical_order(Source& source, int levels, std::uint32_t root, Work work)
   dag.leaf_blocks.reserve(source.leaf_blocks());
 
   const auto place_leaf = [&](std::uint32_t id) {
-    std::uint32_t& forward = source.forward(id);
-    if (forward == 0) {
-      const std::uint32_t* words = source.words(leaf_level, id);
-      dag.leaf_blocks.push_back(words[0] | static_cast<std::uint64_t>(words[1]) << 32);
-      forward = static_cast<std::uint32_t>(dag.leaf_blocks.size());
+    std::uint32_t& forward = source.forward(leaf_level, id);
+    if (forward < kPlaced) {
+      forward = static_cast<std::uint32_t>(dag.leaf_blocks.size() + kPlaced);
+      dag.leaf_blocks.push_back(source.leaf_block(id));
     }
-    return forward - 1;
+    return static_cast<std::uint32_t>(forward - kPlaced);
   };
   const auto place_node = [&](int level, std::uint32_t id) {
-    std::uint32_t* words = source.words(level, id);
-    if (words[0] < kPlaced) {
+    std::uint32_t& forward = source.forward(level, id);
+    if (forward < kPlaced) {
       const auto place = dag.nodes.size();
-      dag.nodes.insert(dag.nodes.end(), words, words + 1 + popcount(words[0]));
-      words[0] = static_cast<std::uint32_t>(place + kPlaced);
+      const std::uint32_t* const words = source.words(level, id);
+      dag.nodes.insert(dag.nodes.end(), words, words + words_of_node(words));
+      forward = static_cast<std::uint32_t>(place + kPlaced);
     }
-    return static_cast<std::uint32_t>(words[0] - kPlaced);
+    return static_cast<std::uint32_t>(forward - kPlaced);
   };
 
   if (leaf_level == 0) {

@@ -72,6 +72,11 @@ struct Svdag {
 /// Returns the 8-bit child mask of a node above the leaf blocks.
 VOXDAG_HD inline std::uint32_t child_mask(const std::uint32_t* node) { return node[0] & 0xFFu; }
 
+/// Returns the number of words of a node above the leaf blocks.
+VOXDAG_HD inline int words_of_node(const std::uint32_t* node) {
+  return 1 + popcount8(child_mask(node));
+}
+
 /// Returns the pointer to child `index`, which must be present.
 VOXDAG_HD inline std::uint32_t child_pointer(const std::uint32_t* node, int index) {
   return node[1 + popcount8(node[0] & ((1u << index) - 1u))];

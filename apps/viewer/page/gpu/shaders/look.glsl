@@ -137,7 +137,7 @@ uvec3 readValue(highp usampler2D words, highp usampler2D pages, uint end_code, u
   uint index = number % uint(PAGES_PAGE_VALUES);
   uint fine = end_code & 3u, end_bits = fine > 0u ? 3u * (fine + 5u) : 16u;
   bool any_length = end_code > 3u;
-  uint header_bits = any_length ? 11u : 9u, unit = any_length ? 1u : 4u;
+  uint header_bits = uint(PAGES_TYPE_BITS) + (any_length ? 8u : 6u), unit = any_length ? 1u : 4u;
   BitPlace place = BitPlace(begin >> 2u, (begin & 3u) * 8u);
   uint type = 0u;
   for (int i = 0; i < PAGES_PAGE_VALUES; ++i) {
