@@ -101,6 +101,27 @@ def test_colors_are_painted_and_kept():
         assert (e.dag().colors(voxels) == color).all()
 
 
+def test_replace_gives_old_and_new_voxels_the_color_in_one_edit():
+    dag = scene(colors=True)
+    quarter = (0, 0, np.sin(np.pi / 4), np.cos(np.pi / 4))
+    for shape, arguments, inside in (
+            ("ball", ((10, 11, 12), 6.25), in_ball((10, 11, 12), 6.25)),
+            ("box", ((3, 4, 5), (20, 9, 30)), in_box((3, 4, 5), (20, 9, 30))),
+            ("capsule", ((4, 4, 4), (25, 20, 9), 3), in_capsule((4, 4, 4), (25, 20, 9), 3)),
+            ("half_space", ((16, 16, 16), (1, 0, 1)), (CENTRES - 16) @ (1, 0, 1) < 0),
+            ("turned_box", ((16, 16, 16), (9, 4, 2), quarter), in_box((12, 7, 14), (20, 25, 18)))):
+        with dag.edit() as e:
+            getattr(e, "replace_" + shape)(*arguments, color=(4, 5, 6))
+            edited = e.dag()
+            assert e.undo_count == 1 and e.undo() and e.dag() == dag
+        assert np.array_equal(edited.to_dense(), dag.to_dense() | inside), shape
+        coords = np.argwhere(edited.to_dense())
+        is_inside = inside[tuple(coords.T)]
+        assert (edited.colors(coords[is_inside]) == (4, 5, 6)).all()
+        kept = coords[~is_inside]
+        assert np.array_equal(edited.colors(kept), dag.colors(kept))
+
+
 def test_filters_copies_stamps_and_voxels():
     dag = scene()
     before = dag.to_dense()
@@ -200,6 +221,8 @@ def test_bad_arguments_change_nothing():
             (lambda: e.remove_ball((1, 2, float("nan")), 1), "not a number"),
             (lambda: e.paint_ball((1, 2, 3), 1), "needs a colour"),
             (lambda: e.paint_ball((1, 2, 3), 1, color=(1, 2, 3)), "the DAG has no colours"),
+            (lambda: e.replace_ball((1, 2, 3), 1), "replace needs a colour"),
+            (lambda: e.replace_ball((1, 2, 3), 1, color=(1, 2, 3)), "the DAG has no colours"),
             (lambda: e.add_ball((1, 2, 3), 1, color=np.zeros((2, 3), np.uint8)), "one for each"),
             (lambda: e.add_box((1, 2, 3), (0, 5, 5)), "max is less than its min"),
             (lambda: e.smooth((1, 2, 3), 1e5), "radius"),

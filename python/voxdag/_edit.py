@@ -48,7 +48,8 @@ class Edit:
     row for each of n shapes: (n, 3) centres and (n,) radii make n edits, in their order.
 
     color: sRGB, (3,) or (n, 3) uint8; material: a number. Voxels that are added without them take
-    those of the nearest voxel. Bad arguments raise ValueError, and then nothing has changed.
+    those of the nearest voxel; replace_*() gives them to old and new voxels. Bad arguments raise
+    ValueError, and then nothing has changed.
     """
 
     def __init__(self, dag, history=0):
@@ -76,6 +77,10 @@ class Edit:
         """Gives a colour or a material to the voxels at most radius from center."""
         self._apply("paint", "ball", color, material, center=(center, 3), radius=(radius, 1))
 
+    def replace_ball(self, center, radius, *, color=None, material=None):
+        """Adds and paints the voxels at most radius from center."""
+        self._apply("replace", "ball", color, material, center=(center, 3), radius=(radius, 1))
+
     def add_box(self, lo, hi, *, color=None, material=None):
         """Adds the voxels of the box from lo to hi."""
         self._apply("add", "box", color, material, lo=(lo, 3), hi=(hi, 3))
@@ -87,6 +92,10 @@ class Edit:
     def paint_box(self, lo, hi, *, color=None, material=None):
         """Gives a colour or a material to the voxels of the box from lo to hi."""
         self._apply("paint", "box", color, material, lo=(lo, 3), hi=(hi, 3))
+
+    def replace_box(self, lo, hi, *, color=None, material=None):
+        """Adds and paints the voxels of the box from lo to hi."""
+        self._apply("replace", "box", color, material, lo=(lo, 3), hi=(hi, 3))
 
     def add_turned_box(self, center, half, turn, *, color=None, material=None):
         """Adds the voxels of a box with half sides `half`, turned about its center by the
@@ -103,6 +112,11 @@ class Edit:
         self._apply("paint", "turnedbox", color, material, center=(center, 3), half=(half, 3),
                     turn=(turn, 4))
 
+    def replace_turned_box(self, center, half, turn, *, color=None, material=None):
+        """Adds and paints the voxels of a turned box: see add_turned_box()."""
+        self._apply("replace", "turnedbox", color, material, center=(center, 3), half=(half, 3),
+                    turn=(turn, 4))
+
     def add_capsule(self, start, end, radius, *, color=None, material=None):
         """Adds the voxels at most radius from the segment from start to end: a brush stroke."""
         self._apply("add", "capsule", color, material, start=(start, 3), end=(end, 3),
@@ -117,6 +131,11 @@ class Edit:
         self._apply("paint", "capsule", color, material, start=(start, 3), end=(end, 3),
                     radius=(radius, 1))
 
+    def replace_capsule(self, start, end, radius, *, color=None, material=None):
+        """Adds and paints the voxels at most radius from a segment."""
+        self._apply("replace", "capsule", color, material, start=(start, 3), end=(end, 3),
+                    radius=(radius, 1))
+
     def add_half_space(self, point, normal, *, color=None, material=None):
         """Adds the voxels of the grid on the side of a plane that its normal points away from."""
         self._apply("add", "halfspace", color, material, point=(point, 3), normal=(normal, 3))
@@ -129,6 +148,10 @@ class Edit:
         """Gives a colour or a material to the voxels on the side of a plane that its normal points
         away from."""
         self._apply("paint", "halfspace", color, material, point=(point, 3), normal=(normal, 3))
+
+    def replace_half_space(self, point, normal, *, color=None, material=None):
+        """Adds and paints the voxels on the side of a plane that its normal points away from."""
+        self._apply("replace", "halfspace", color, material, point=(point, 3), normal=(normal, 3))
 
     def smooth(self, center, radius):
         """Sets each voxel of a ball if at least 14 of the 27 voxels around it are set."""

@@ -193,6 +193,16 @@ TEST_F(LiveEdit, ColoursArePaintedAndKept) {
     expected[{20 + (i & 1), 20 + (i >> 1 & 1), 20 + (i >> 2)}] = {1, 2, 3};
   edit("c.vdag", "paint,box,0,0,0,32,32,8,#ff8000\nadd,box,20,20,20,22,22,22,#010203\n");
   EXPECT_EQ(colors_of("out.vdag"), expected);
+  for (int i = 0; i < 1000; ++i) expected[{5 + i % 10, 5 + i / 10 % 10, 5 + i / 100}] = {4, 5, 6};
+  for (const char* last :
+       {"replace,box,5,5,5,15,15,15,#040506\n",
+        R"({"op": "replace", "shape": "box", "min": [5, 5, 5], "max": [15, 15, 15],)"
+        R"( "color": "#040506"})"}) {
+    edit("c.vdag", std::string("paint,box,0,0,0,32,32,8,#ff8000\n"
+                               "add,box,20,20,20,22,22,22,#010203\n") +
+                       last);
+    EXPECT_EQ(colors_of("out.vdag"), expected) << last;
+  }
   edit("c.vdag", "remove,ball,8,8,8,3\n", {"--drop-attributes"});
   edit("a.vdag", "remove,ball,8,8,8,3\n");
   const std::string plain = read_text(path("out.vdag"));
@@ -244,6 +254,9 @@ TEST_F(LiveEdit, AnErrorNamesTheFileAndTheLineAndNothingIsWritten) {
       {"remove,ball,1,2,3,1\n\nremove,cube,1\n", "script.csv: line 3: 'cube' is no shape"},
       {"undo\n", "line 1: there is nothing to undo"},
       {"paint,ball,1,2,3,4,#ff0000\n", "line 1: the DAG has no colours"},
+      {"replace,ball,1,2,3,4,#ff0000\n", "line 1: the DAG has no colours"},
+      {R"({"op": "replace", "shape": "ball", "center": [1, 2, 3], "radius": 3})",
+       "line 1: replace needs a colour"},
       {"{\"op\": \"undo\"\n", "line 1: is no object of JSON"},
       {R"({"op": "undo", "twice": 1})", "line 1: 'twice' is no member of this edit"},
       {R"({"op": "remove", "shape": "ball", "center": [1, 2], "radius": 3})",

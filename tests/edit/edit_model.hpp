@@ -54,6 +54,11 @@ class EditModel {
       if (has(v) && oracle_has(shape, v)) (*this)[v].color = color;
     });
   }
+  void replace(const EditShape& shape, Value8 color) {
+    for_each([&](Vec3i v) {
+      if (oracle_has(shape, v)) (*this)[v] = {true, color};
+    });
+  }
   void copy(const Box3i& box, Vec3i to, bool moves) {
     const EditModel before = *this;
     const auto in_box = [&](Vec3i v) {

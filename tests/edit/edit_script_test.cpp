@@ -107,6 +107,9 @@ TEST(EditScript, ColoursAndMaterialsFollowTheNumbers) {
   const EditStep both = step_of("paint,ball,1,2,3,4,material=7,#Ff8001");
   EXPECT_EQ(both.paint.color, (Value8{255, 128, 1}));
   EXPECT_EQ(both.paint.material, 7u);
+  const EditStep replaced = step_of("replace,ball,1,2,3,4,#ff8001");
+  EXPECT_EQ(replaced.verb, EditVerb::kReplace);
+  EXPECT_EQ(replaced.paint.color, both.paint.color);
   EXPECT_FALSE(step_of("add,ball,1,2,3,4,material=7").paint.color);
   EXPECT_FALSE(step_of("add,ball,1,2,3,4").paint.material);
 }
@@ -115,7 +118,7 @@ TEST(EditScript, AnErrorSaysWhatIsWrongAndWhatIsAllowed) {
   const struct {
     const char *line, *text;
   } cases[] = {
-      {"carve,ball,1,2,3,4", "'carve' is no edit: use add, remove, paint, smooth, grow"},
+      {"carve,ball,1,2,3,4", "'carve' is no edit: use add, remove, paint, replace, smooth"},
       {"remove", "'' is no shape: use ball, box, capsule, halfspace or turnedbox"},
       {"remove,cube,1,2,3,4", "'cube' is no shape"},
       {"smooth,box,1,2,3,4,5,6", "smooth takes a ball only"},
@@ -129,6 +132,7 @@ TEST(EditScript, AnErrorSaysWhatIsWrongAndWhatIsAllowed) {
       {"undo,", "the line ends in a comma"},
       {"remove,ball,1,2,3,4,#ff0000", "remove takes no colour and no material"},
       {"paint,ball,1,2,3,4", "paint needs a colour #rrggbb or a material"},
+      {"replace,ball,1,2,3,4", "replace needs a colour #rrggbb or a material"},
       {"paint,ball,1,2,3,4,#ff00", "'#ff00' is no colour: use #rrggbb"},
       {"paint,ball,1,2,3,4,#ff00gg", "'#ff00gg' is no colour"},
       {"paint,ball,1,2,3,4,#ff0000,#ff0000", "two colours"},

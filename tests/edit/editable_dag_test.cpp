@@ -17,30 +17,24 @@ void edit_both(RandomEdits& random, EditableDag& dag, EditModel& model, bool has
   EditPaint paint;
   if (has_colors) paint.color = color;
   const EditShape shape = random.shape();
-  switch (random.below(has_colors ? 8 : 9)) {
+  switch (random.below(has_colors ? 9 : 8)) {
     case 0:
     case 1:
       dag.remove(shape);
       return model.remove(shape);
     case 2:
-      if (has_colors) {
-        dag.paint(shape, paint);
-        return model.paint(shape, color);
-      }
-      [[fallthrough]];
     case 3:
-    case 4:
       dag.add(shape, paint);
       return model.add(shape, color);
-    case 5: {
+    case 4: {
       const Box3i box = random.box();
       const Vec3i to = random.box().lo - Vec3i{3, 3, 3};
       const bool moves = random.below(2) != 0;
       dag.copy(box, to, moves);
       return model.copy(box, to, moves);
     }
-    case 6:
-    case 7: {
+    case 5:
+    case 6: {
       const Box3i box = random.box();
       EditModel stamp(dag.levels(), random_voxels(dag.levels(), 200, random.below(1000)));
       const Svdag voxels = stamp.dag();
@@ -60,6 +54,11 @@ void edit_both(RandomEdits& random, EditableDag& dag, EditModel& model, bool has
       return;
     }
     default: {
+      if (has_colors) {
+        const bool replaces = random.below(2) != 0;
+        replaces ? dag.replace(shape, paint) : dag.paint(shape, paint);
+        return replaces ? model.replace(shape, color) : model.paint(shape, color);
+      }
       const BallShape ball = random.ball();
       const auto filter = static_cast<BallFilter>(random.below(3));
       dag.filter(ball, filter);
@@ -204,6 +203,44 @@ TEST(EditableDag, PaintsCellsOfWhichTheShapeHasAVoxel) {
       });
       ASSERT_EQ(after.read(v, 4).color, is_painted ? red : before.read(v, 4).color);
     });
+  }
+}
+
+TEST(EditableDag, ReplacesAsAddingAndPaintingInOneEdit) {
+  const EditPaint paints[] = {
+      {.color = Value8{1, 2, 3}}, {.material = 2}, {.color = Value8{4, 5, 6}, .material = 3}};
+  for (const int finest : {2, 4}) {
+    const Svdag base = brute_svdag(4, random_voxels(4, 300, 3));
+    const NumberColors colors(base.view(), finest);
+    EditableDag dag(colors.view()), two(colors.view());
+    RandomEdits random(4, 3);
+    for (int i = 0; i < 12; ++i) {
+      const EditShape shape = random.shape();
+      const EditPaint& paint = paints[i % 3];
+      dag.replace(shape, paint);
+      two.add(shape, paint);
+      two.paint(shape, paint);
+      const EditSnapshot now = dag.snapshot(), other = two.snapshot();
+      ASSERT_EQ(now.svdag(), other.svdag());
+      LookReader a(now.values()), b(other.values());
+      EditModel(4, {}).for_each([&](Vec3i v) {
+        const bool is_set = svdag_contains(now.view(), v, 4), is_inside = oracle_has(shape, v);
+        ASSERT_TRUE(is_set || !is_inside);
+        if (!is_set) return;
+        const VoxelLook is = a.read(v, 4), expected = b.read(v, 4);
+        ASSERT_EQ(is.color, expected.color);
+        ASSERT_EQ(is.material, expected.material);
+        ASSERT_EQ(pack_normal(is.normal), pack_normal(expected.normal));
+        if (!is_inside) return;
+        ASSERT_EQ(is.color, paint.color.value_or(is.color));
+        ASSERT_EQ(is.material, paint.material.value_or(is.material));
+      });
+    }
+    EXPECT_EQ(dag.undo_count(), 12u);
+    EXPECT_THROW(dag.replace(random.shape(), {.material = kNumberMaterials}), Error);
+    while (dag.undo()) {
+    }
+    EXPECT_EQ(dag.snapshot().svdag(), base);
   }
 }
 

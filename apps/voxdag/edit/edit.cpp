@@ -130,7 +130,7 @@ void add_edit_command(const Command& program, Session& session) {
       "  voxdag edit scene.vdag --script strokes.csv -o edited.vdag\n\n"
       "An edit takes time for what it touches, not for the scene. A script has one edit a line, in "
       "world units:\n"
-      "add|remove|paint,SHAPE,NUMBERS[,#rrggbb][,material=N]; shapes are ball,X,Y,Z,R; "
+      "add|remove|paint|replace,SHAPE,NUMBERS[,#rrggbb][,material=N]; shapes are ball,X,Y,Z,R; "
       "box,X0,Y0,Z0,X1,Y1,Z1; capsule,X0,Y0,Z0,X1,Y1,Z1,R; halfspace,PX,PY,PZ,NX,NY,NZ and "
       "turnedbox,X,Y,Z,HX,HY,HZ,QX,QY,QZ,QW.\n"
       "smooth|grow|shrink,ball,X,Y,Z,R; copy|move,X0,Y0,Z0,X1,Y1,Z1,TX,TY,TZ; undo; redo.\n"

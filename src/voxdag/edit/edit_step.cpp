@@ -13,8 +13,8 @@ namespace voxdag {
 namespace {
 
 /// In the order of EditVerb.
-constexpr std::string_view kVerbs[] = {"add",    "remove", "paint", "smooth", "grow",
-                                       "shrink", "copy",   "move",  "undo",   "redo"};
+constexpr std::string_view kVerbs[] = {"add",    "remove", "paint", "replace", "smooth", "grow",
+                                       "shrink", "copy",   "move",  "undo",    "redo"};
 
 constexpr EditField kBall[] = {{"center", 3}, {"radius", 1}};
 constexpr EditField kBox[] = {{"min", 3}, {"max", 3}};
@@ -95,8 +95,8 @@ EditVerb edit_verb(std::string_view name) {
   const auto* found = std::find(std::begin(kVerbs), std::end(kVerbs), name);
   if (found == std::end(kVerbs))
     throw Error(in_quotes(name) +
-                " is no edit: use add, remove, paint, smooth, grow, shrink, copy, move, undo or "
-                "redo");
+                " is no edit: use add, remove, paint, replace, smooth, grow, shrink, copy, move, "
+                "undo or redo");
   return static_cast<EditVerb>(found - std::begin(kVerbs));
 }
 
@@ -126,10 +126,11 @@ EditStep make_edit_step(EditVerb verb, std::string_view shape, std::span<const d
     throw Error(needs_text(takes_shape(verb) ? shape : verb_name(verb), fields) + "; it has " +
                 std::to_string(numbers.size()));
   const bool has_paint = paint.color || paint.material;
-  if (has_paint && verb != EditVerb::kAdd && verb != EditVerb::kPaint)
+  const bool paints = verb == EditVerb::kPaint || verb == EditVerb::kReplace;
+  if (has_paint && verb != EditVerb::kAdd && !paints)
     throw Error(std::string(verb_name(verb)) + " takes no colour and no material");
-  if (!has_paint && verb == EditVerb::kPaint)
-    throw Error("paint needs a colour #rrggbb or a material");
+  if (!has_paint && paints)
+    throw Error(std::string(verb_name(verb)) + " needs a colour #rrggbb or a material");
   EditStep step{.verb = verb, .paint = paint};
   if (takes_shape(verb)) {
     step.shape = shape_of(shape, numbers, grid);
@@ -154,6 +155,8 @@ void apply_step(EditableDag& dag, const EditStep& step) {
       return dag.remove(step.shape);
     case EditVerb::kPaint:
       return dag.paint(step.shape, step.paint);
+    case EditVerb::kReplace:
+      return dag.replace(step.shape, step.paint);
     case EditVerb::kSmooth:
       return filter(BallFilter::kSmooth);
     case EditVerb::kGrow:

@@ -10,9 +10,9 @@
 ///   halfspace | point 3, normal 3: the side that the normal points away from
 ///   turnedbox | center 3, half 3, turn 4: half sides, and a quaternion x,y,z,w
 ///
-/// add, remove and paint take any shape; smooth, grow and shrink take a ball. copy and move take no
-/// shape, but min 3, max 3, to 3: a box, and the place of its lower corner. undo and redo take
-/// none.
+/// add, remove, paint and replace take any shape; smooth, grow and shrink take a ball. copy and
+/// move take no shape, but min 3, max 3, to 3: a box, and the place of its lower corner. undo and
+/// redo take none.
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -23,12 +23,24 @@
 
 namespace voxdag {
 
-enum class EditVerb { kAdd, kRemove, kPaint, kSmooth, kGrow, kShrink, kCopy, kMove, kUndo, kRedo };
+enum class EditVerb {
+  kAdd,
+  kRemove,
+  kPaint,
+  kReplace,
+  kSmooth,
+  kGrow,
+  kShrink,
+  kCopy,
+  kMove,
+  kUndo,
+  kRedo
+};
 
 struct EditStep {
   EditVerb verb = EditVerb::kUndo;
   EditShape shape{};  ///< Of kAdd to kShrink; a BallShape for filters.
-  EditPaint paint{};  ///< Of kAdd and kPaint.
+  EditPaint paint{};  ///< Of kAdd, kPaint and kReplace.
   Box3i box{};        ///< Of kCopy and kMove, in voxels; without box.hi.
   Vec3i to{};         ///< Where the voxel box.lo comes, in voxels.
 };

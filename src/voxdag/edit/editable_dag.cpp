@@ -97,14 +97,28 @@ void EditableDag::check(const EditPaint& paint) const {
                 std::to_string(attributes_.materials.materials));
 }
 
+void EditableDag::add_shape(Version& version, const EditShape& shape, const EditPaint& paint) {
+  std::visit([&](const auto& of) { version.root = ShapeEdit(*nodes_, of, true).run(version.root); },
+             shape);
+  paint_new(version, versions_[now_]->root, paint, &shape);
+}
+
+void EditableDag::paint_shape(Version& version, const EditShape& shape, const EditPaint& paint) {
+  const auto run = [&](std::uint32_t& overlay, std::uint32_t value) {
+    std::visit(
+        [&](const auto& of) {
+          overlay = ShapePaint(*nodes_, *values_, of, attributes_.index.finest_level, value)
+                        .run(version.root, overlay);
+        },
+        shape);
+  };
+  if (paint.color) run(version.colors, overlay_value(*paint.color));
+  if (paint.material) run(version.materials, overlay_material(*paint.material));
+}
+
 void EditableDag::add(const EditShape& shape, const EditPaint& paint) {
   check(paint);
-  apply([&](Version& version) {
-    std::visit(
-        [&](const auto& of) { version.root = ShapeEdit(*nodes_, of, true).run(version.root); },
-        shape);
-    paint_new(version, versions_[now_]->root, paint, &shape);
-  });
+  apply([&](Version& version) { add_shape(version, shape, paint); });
 }
 
 void EditableDag::remove(const EditShape& shape) {
@@ -117,17 +131,14 @@ void EditableDag::remove(const EditShape& shape) {
 
 void EditableDag::paint(const EditShape& shape, const EditPaint& paint) {
   check(paint);
+  apply([&](Version& version) { paint_shape(version, shape, paint); });
+}
+
+void EditableDag::replace(const EditShape& shape, const EditPaint& paint) {
+  check(paint);
   apply([&](Version& version) {
-    const auto run = [&](std::uint32_t& overlay, std::uint32_t value) {
-      std::visit(
-          [&](const auto& of) {
-            overlay = ShapePaint(*nodes_, *values_, of, attributes_.index.finest_level, value)
-                          .run(version.root, overlay);
-          },
-          shape);
-    };
-    if (paint.color) run(version.colors, overlay_value(*paint.color));
-    if (paint.material) run(version.materials, overlay_material(*paint.material));
+    add_shape(version, shape, paint);
+    paint_shape(version, shape, paint);
   });
 }
 

@@ -97,6 +97,9 @@ class EditableDag {
   void remove(const EditShape& shape);
   /// Gives values to the voxels of a shape. Throws Error if the DAG has no such values.
   void paint(const EditShape& shape, const EditPaint& paint);
+  /// Adds the voxels of a shape and gives values to all of them, old and new, as one edit. Throws
+  /// Error if the DAG has no such values.
+  void replace(const EditShape& shape, const EditPaint& paint);
   /// Joins the voxels of a DAG of the same number of levels. `look` has their values; empty:
   /// `paint` and the nearest voxels. `box` is the stamp's box for kReplace, in voxels: its lower
   /// corner belongs to it, its upper one does not.
@@ -135,6 +138,8 @@ class EditableDag {
   void push(Version version);
   bool has_values() const { return !attributes_.is_empty(); }
   void check(const EditPaint& paint) const;
+  void add_shape(Version& version, const EditShape& shape, const EditPaint& paint);
+  void paint_shape(Version& version, const EditShape& shape, const EditPaint& paint);
   std::uint32_t join_stamp(std::uint32_t root, const SvdagView& voxels, bool adds);
   /// Gives values to the voxels that `version` has and the root `before` has not. The voxels that
   /// were nearest in the current version have what `paint` lacks: nearest to the middle of `shape`,
