@@ -12,6 +12,7 @@
 #include "voxdag/algebra/voxels/voxel_builder.hpp"
 #include "voxdag/edit/edit_step.hpp"
 #include "voxdag/edit/place_stamp.hpp"
+#include "voxdag/file/model/seeded.hpp"
 #include "voxdag/file/model/with_voxels.hpp"
 
 namespace py = pybind11;
@@ -24,11 +25,12 @@ using Colors = std::vector<Vec3<std::uint8_t>>;
 /// An edited DAG that threads may share: one changes it at a time.
 class LiveEdit {
  public:
-  LiveEdit(DagPointer base, std::size_t history)
-      : base_(std::move(base)), dag_(run_work([&](Work) {
+  LiveEdit(const DagPointer& base, std::size_t history)
+      : base_(base->view().is_empty() ? std::make_shared<Dag>(seeded(base->model())) : base),
+        dag_(run_work([&](Work) {
           return std::make_unique<EditableDag>(
               ColoredDagView{base_->view(), base_->model().attributes()},
-              EditOptions{.history = history});
+              EditOptions{.history = history, .starts_empty = base_ != base});
         })) {}
 
   const Dag& base() const { return *base_; }

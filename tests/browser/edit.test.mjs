@@ -178,6 +178,25 @@ describeInBrowsers('editing', (name, browser) => {
     await plain.close();
   });
 
+  it('begins on the floor of a grid without voxels, and undoes to nothing', async () => {
+    const empty = path.join(folder, `empty-${name}.vdag`);
+    voxdag('edit', buildColored(64), '--do', 'remove,halfspace,0,0,0,0,-1,0', '--do', 'remove,halfspace,0,0,0,0,1,0', '-o', empty, '-q');
+    const server = await view(empty, '--edit'), page = await loadEditor(server.url);
+    assert.equal(await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.info.voxels), 0);
+    assert.equal(await root(page), 0xffffffff);
+    const nothing = await picture(page);
+    await choose(page, ['add'], '#00ff00');
+    await change(page, () => drag(page, ACROSS));
+    const drawn = await picture(page);
+    assert.ok(tinted(nothing, drawn, 1) > 0.01, `green voxels on the floor: ${tinted(nothing, drawn, 1)}`);
+    assert.ok((await pick(page)).position[1] > (await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.info.origin[1])));
+    await change(page, () => press(page, 'Control', 'z'));
+    assert.equal(await picture(page), nothing);
+    assertNoComplaints(page);
+    await page.close();
+    await server.close();
+  });
+
   it('refuses edits of a foreign page, even of one that knows the secret', async () => {
     const server = await view(buildColored(64), '--edit'), token = new URL(server.url).searchParams.get('edit');
     const site = path.join(folder, 'foreign');

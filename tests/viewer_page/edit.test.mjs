@@ -4,6 +4,7 @@ import { test } from 'node:test';
 
 import { Stroke, lineOf } from '../../apps/viewer/page/edit/brush.js';
 import { EditClient } from '../../apps/viewer/page/edit/client.js';
+import { floorHit } from '../../apps/viewer/page/edit/floor.js';
 import { applyUpdate, parseUpdate, withRuns } from '../../apps/viewer/page/edit/update.js';
 import { overlayAt } from '../../apps/viewer/page/materials.js';
 import { NO_NODE, bounds, cast, contains } from '../../apps/viewer/page/trace.js';
@@ -43,6 +44,14 @@ test('a stroke of capsules is connected, but not over a gap in the surface', asy
   for (let i = 1; i < lines.length; ++i) assert.deepEqual(lines[i].slice(0, 3), lines[i - 1].slice(3));
   const broken = (await drawn({ shape: 'capsule' }, [[0, 0], [100, 0]], (x) => x < 30 || x > 70)).map(({ line }) => line.split(',').map(Number));
   assert.equal(broken.filter((line) => line[2] === line[5]).length, 2);
+});
+
+test('a brush beside the surface is on the lower side of the grid', () => {
+  const info = /** @type {any} */ ({ origin: [10, 20, 30], voxelSize: 0.5, resolution: 32, levels: 5, view: { up: [0, 1, 0] } });
+  assert.deepEqual(floorHit(info, [14, 28, 34], [0, -1, 0.25]), { voxel: [8, 0, 12], level: 5, face: 3, position: [14, 20, 36], distance: 8 });
+  assert.deepEqual(floorHit({ ...info, view: { up: [0, 0.1, -1] } }, [14, 28, 34], [0, 0, 1]), { voxel: [8, 16, 31], level: 5, face: 4, position: [14, 28, 46], distance: 12 });
+  for (const [from, direction] of [[[14, 28, 34], [0, 1, 0]], [[14, 28, 34], [1, 0, 0]], [[14, 28, 34], [-1, -1, 0]], [[14, 19, 34], [0, -1, 0]]])
+    assert.equal(floorHit(info, /** @type {any} */ (from), /** @type {any} */ (direction)), null);
 });
 
 test('an update brings its runs into memory and textures, and its roots', () => {

@@ -44,11 +44,11 @@ fs::path save_path(const fs::path& folder, std::string_view name) {
 }
 
 EditSession::EditSession(const ColoredDagView& scene, const Grid& grid, fs::path file, Save save,
-                         Work work)
+                         Work work, bool starts_empty)
     : grid_(grid),
       file_(std::move(file)),
       save_(std::move(save)),
-      dag_(scene, {.tracks_changes = true}, work) {}
+      dag_(scene, {.tracks_changes = true, .starts_empty = starts_empty}, work) {}
 
 void EditSession::check_writer(std::uint32_t writer) const {
   if (writer != writer_ || writer == 0) throw NotTheWriter();

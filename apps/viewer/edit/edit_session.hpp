@@ -33,9 +33,9 @@ class EditSession {
   using Save = std::function<void(const EditSnapshot&, const std::filesystem::path&)>;
 
   /// Copies a valid DAG, but not its attributes, which must outlive this object. `file` is the file
-  /// that saving suggests. Files are saved in its folder only.
+  /// that saving suggests. Files are saved in its folder only. `starts_empty`: see EditOptions.
   EditSession(const ColoredDagView& scene, const Grid& grid, std::filesystem::path file, Save save,
-              Work work = {});
+              Work work = {}, bool starts_empty = false);
 
   /// Returns the name of the file that saving suggests.
   std::string file_name() const { return file_.filename().string(); }

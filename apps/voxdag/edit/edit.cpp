@@ -17,6 +17,7 @@
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/edit/edit_script.hpp"
 #include "voxdag/edit/replay.hpp"
+#include "voxdag/file/model/seeded.hpp"
 #include "voxdag/file/model/with_voxels.hpp"
 
 namespace voxdag::cli {
@@ -33,14 +34,15 @@ struct ScriptArguments {
 /// A DAG that edits change one after another.
 class EditRun {
  public:
-  EditRun(const DagModel& model, const ScriptArguments& arguments, MemoryBudget& memory,
-          Session& session)
+  EditRun(const DagModel& model, bool starts_empty, const ScriptArguments& arguments,
+          MemoryBudget& memory, Session& session)
       : work_(&memory, &session.progress),
         model_(model),
         stamps_(model.grid(), {{"--output", arguments.edit.output}}, memory, session),
         dag_(ColoredDagView{model.view(), arguments.edit.drop_attributes ? DagAttributesView{}
                                                                          : model.attributes()},
-             {.history = arguments.history}, work_) {}
+             {.history = arguments.history, .starts_empty = starts_empty}, work_),
+        drops_attributes_(arguments.edit.drop_attributes) {}
 
   /// Applies a line of CSV or JSON.
   void apply(std::string_view line) {
@@ -87,7 +89,7 @@ class EditRun {
     Svdag dag = now.svdag(work_);
     DagAttributes attributes = now.attributes(dag.view(), {}, work_);
     return with_voxels(model_, std::move(dag), std::move(attributes),
-                       fmt::format("{} edits", count_), work_);
+                       fmt::format("{} edits", count_), work_, drops_attributes_);
   }
 
  private:
@@ -95,14 +97,17 @@ class EditRun {
   const DagModel& model_;
   StampFiles stamps_;
   EditableDag dag_;
+  bool drops_attributes_;
   std::uint64_t count_ = 0;
 };
 
 void run(const ScriptArguments& arguments, Session& session) {
   check_writable(arguments.edit.output);
   MemoryBudget memory = command_budget(arguments.edit.memory_limit);
-  const DagModel model(session.subject, {&memory, &session.progress});
-  EditRun run(model, arguments, memory, session);
+  DagModel model(session.subject, {&memory, &session.progress});
+  const bool is_compact = model.is_compact(), is_empty = model.view().is_empty();
+  if (is_empty) model = seeded(model, &memory);
+  EditRun run(model, is_empty, arguments, memory, session);
   Stopwatch watch;
   for (const std::string& script : arguments.scripts) run.run_script(script);
   if (!arguments.replay.empty()) run.run_replay(arguments.replay);
@@ -116,7 +121,7 @@ void run(const ScriptArguments& arguments, Session& session) {
                    {"new_nodes", run.dag().nodes().added_nodes()},
                    {"new_bytes", run.dag().nodes().added_bytes() + run.dag().values().bytes()},
                    {"undo_depth", run.dag().undo_count()}});
-  const bool compact = arguments.edit.compact || (!arguments.edit.plain && model.is_compact());
+  const bool compact = arguments.edit.compact || (!arguments.edit.plain && is_compact);
   write_edited(arguments.edit, run.model(), compact, memory, session, counts);
 }
 

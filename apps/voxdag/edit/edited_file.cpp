@@ -108,7 +108,7 @@ void write_edited(const EditArguments& arguments, DagModel model, bool compact,
   model.set_presentation(with_home(model.metadata().presentation, model.view(), model.grid()));
   model.save(arguments.output, compact, {&memory, &session.progress});
   const std::uint64_t voxels = model.metadata().counts.voxels;
-  warn_if_empty(voxels, arguments.output, session);
+  warn_if_empty(voxels, arguments.output, session, "the edit left none");
   WrittenFiles written{
       {arguments.output}, {{"voxels", voxels}}, compact ? "compact form" : "plain form"};
   written.counts.insert(written.counts.end(), counts.begin(), counts.end());

@@ -6,6 +6,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/file/model/seeded.hpp"
 #include "voxdag/file/report/human.hpp"
 #include "voxdag/file/vdag_container.hpp"
 
@@ -47,10 +48,15 @@ ShownScene ShownScene::read(const std::string& path, const ShownSceneArguments& 
   VdagContainer opened(path, work.memory);
   refuse_esvo(opened.kind(), path);
   scene.file_ = std::make_unique<DagModel>(std::move(opened), work);
+  const SvdagCounts counts = scene.file_->metadata().counts;
+  scene.is_seeded_ = arguments.for_edits && scene.file_->view().is_empty();
+  if (scene.is_seeded_) *scene.file_ = seeded(*scene.file_, work);
   scene.dag_ = std::make_unique<ReducedDag>(*scene.file_, path, arguments.reduction, work);
   const DagAttributesView& attributes = scene.dag_->attributes();
   scene.coded_ = reserve_coded(attributes, form, work.memory);
-  scene.bytes_ = make_scene_bytes(scene.dag_->dag(), scene.dag_->metadata(), attributes, form);
+  VdagMetadata metadata = scene.dag_->metadata();
+  if (scene.is_seeded_) metadata.counts = counts;  // The page shows those of the file.
+  scene.bytes_ = make_scene_bytes(scene.dag_->dag(), metadata, attributes, form);
   return scene;
 }
 

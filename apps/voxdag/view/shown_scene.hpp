@@ -14,6 +14,7 @@ namespace voxdag::cli {
 struct ShownSceneArguments {
   DagReduction reduction;
   std::uint64_t memory_limit = 0;
+  bool for_edits = false;  ///< read() makes a DAG without voxels seeded().
 };
 
 /// A scene with the memory that it refers to. Move-only.
@@ -33,6 +34,8 @@ class ShownScene {
   const ReducedDag& dag() const { return *dag_; }
   /// Returns what counts the memory of a scene from read().
   MemoryBudget* memory() const { return memory_.get(); }
+  /// Returns whether read() made the DAG seeded().
+  bool is_seeded() const { return is_seeded_; }
   /// Returns the number of voxels of a scene from read().
   std::uint64_t voxels() const { return dag_->metadata().counts.voxels; }
 
@@ -42,6 +45,7 @@ class ShownScene {
   std::unique_ptr<ReducedDag> dag_;
   MemoryReservation coded_;
   std::unique_ptr<SceneBytes> bytes_;
+  bool is_seeded_ = false;
 };
 
 }  // namespace voxdag::cli

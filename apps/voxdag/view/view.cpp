@@ -39,8 +39,9 @@ void edit(const ViewArguments& arguments, const std::filesystem::path& output, S
   shown.edits = true;
   const BakedPage page(shown);
   const bool is_compact = vdag_kind(session.subject) == VdagKind::kCompact;
-  const ShownScene scene =
-      ShownScene::read(session.subject, arguments.scene, AttributeForm::kPages, session);
+  ShownSceneArguments read = arguments.scene;
+  read.for_edits = true;
+  const ShownScene scene = ShownScene::read(session.subject, read, AttributeForm::kPages, session);
   const ReducedDag& dag = scene.dag();
   const Work work(scene.memory(), &session.progress);
   const auto save = [&](const EditSnapshot& version, const std::filesystem::path& path) {
@@ -51,11 +52,12 @@ void edit(const ViewArguments& arguments, const std::filesystem::path& output, S
     DagAttributes attributes = version.attributes(voxels.view(), {}, work);
     for (auto* values : {&metadata.attributes.colors, &metadata.attributes.normals})
       if (*values) (*values)->errors.reset();
-    if (attributes.view().is_empty()) metadata.attributes = {};
+    if (attributes.view().is_empty() && !voxels.view().is_empty()) metadata.attributes = {};
     const DagModel model(std::move(voxels), std::move(attributes), std::move(metadata), work);
     model.save(path, is_compact, work);
   };
-  EditSession editing({dag.dag(), dag.attributes()}, dag.metadata().grid, output, save, work);
+  EditSession editing({dag.dag(), dag.attributes()}, dag.metadata().grid, output, save, work,
+                      scene.is_seeded());
   serve_scene(scene.bytes(), page.files(), arguments.serve, session, &editing);
 }
 

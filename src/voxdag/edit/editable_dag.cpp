@@ -83,7 +83,7 @@ EditableDag::EditableDag(const ColoredDagView& base, EditOptions options, Work w
       collect_at_(kCollectAtLeast) {
   if (options.tracks_changes) nodes_->track_changes(), values_->track_changes();
   Version version;
-  version.root = nodes_->base_root();
+  version.root = options.starts_empty ? EditNodes::kNone : nodes_->base_root();
   push(std::move(version));
 }
 

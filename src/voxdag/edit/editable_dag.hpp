@@ -36,6 +36,8 @@ struct EditOptions {
   std::size_t history = 0;
   /// Notes what edits write, for take_changes(). Needs memory until it is taken.
   bool tracks_changes = false;
+  /// Begins without voxels. The base has the kinds of values then (file/model/seeded.hpp).
+  bool starts_empty = false;
 };
 
 /// How a stamp changes voxels.

@@ -2,12 +2,14 @@
 import { mostTexels } from '../gpu/long_texture.js';
 import { isTyping } from '../hands/keys.js';
 import { length, sub } from '../math.js';
+import { NO_NODE } from '../trace.js';
 import { button, choice, group, refreshAll, segments, slider, textField } from '../ui/controls.js';
 import { h, say } from '../ui/dom.js';
 import { materialName } from '../ui/materials_panel.js';
 import { lengthText } from '../ui/numbers.js';
 import { Stroke } from './brush.js';
 import { EditClient, Refused } from './client.js';
+import { floorHit } from './floor.js';
 import { makePreview } from './preview.js';
 import { applyUpdate } from './update.js';
 
@@ -45,6 +47,7 @@ export function makeEditing(ui, secret) {
     ({ undos, redos } = update);
     viewer.change((memory, textures) => applyUpdate(update, memory, textures, mostTexels(textures.gl)), goesOn);
     root = update.version.root;
+    if (root === NO_NODE && !isOpen) brush.verb = 'add';
     isOpen = true;
     ui.refresh();
   }, fail);
@@ -56,14 +59,23 @@ export function makeEditing(ui, secret) {
   };
 
   const preview = makePreview(ui, usable);
+  /** Returns the place of a brush that meets no surface, if it adds. @param {number} x @param {number} y */
+  const floor = (x, y) => {
+    const ray = ui.overlay.projection?.ray(x, y);
+    return brush.verb === 'add' && viewer.info && ray ? floorHit(viewer.info, ray.origin, ray.direction) : null;
+  };
   const tool = ui.tool({
     hint: () => ({ remove: 'Drag to remove voxels', add: 'Drag to add voxels', paint: 'Drag to paint' })[brush.verb] + '. The right button moves the camera',
     click() {},
-    hover: (hit) => preview.at(hit),
+    hover: (hit, x, y) => preview.at(hit ?? floor(x, y)),
     drag(x, y) {
       const before = root, { overlay } = ui;
+      /** Whether the stroke is on the floor, as its first place is. @type {boolean | null} */
+      let isOnFloor = null;
       const pick = async (/** @type {number} */ px, /** @type {number} */ py) => {
-        const hit = await viewer.pick(px, py, before);
+        const surface = isOnFloor ? null : await viewer.pick(px, py, before);
+        isOnFloor ??= surface === null;
+        const hit = isOnFloor ? floor(px, py) : surface;
         preview.at(hit);
         return hit;
       };
@@ -159,7 +171,8 @@ export function makeEditing(ui, secret) {
       refresh(settings) {
         const { info } = viewer, most = MOST_RADIUS * diagonal();
         body.hidden = !isOpen;
-        say(note, !isOpen ? why : brush.verb === 'paint' && !info?.hasColors && !info?.materials ? 'The file has no colours: voxdag build --color stores them.' : 'Edits stay with the server until they are saved. T ends the brush.');
+        say(note, !isOpen ? why : brush.verb === 'paint' && !info?.hasColors && !info?.materials ? 'The file has no colours: voxdag build --color stores them.'
+          : root === NO_NODE ? 'There are no voxels: Add draws on the floor of the grid.' : 'Edits stay with the server until they are saved. T ends the brush.');
         if (!isOpen || !info) return;
         brush.radius ||= Math.max(FIRST_RADIUS * diagonal(), voxel());
         radius.limits(Math.log2(voxel() / 2), Math.log2(most));

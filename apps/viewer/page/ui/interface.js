@@ -40,7 +40,7 @@ import { SIDES, viewPanel } from './view_panel.js';
  * @typedef {object} Tool  The use of a click on the picture.
  * @property {() => string} hint
  * @property {(hit: Hit) => void} click
- * @property {(hit: Hit | null) => void} [hover]
+ * @property {(hit: Hit | null, x: number, y: number) => void} [hover]
  * @property {(x: number, y: number) => import('../hands/pointers.js').Drag | null} [drag]  Takes drags from the camera; then there are no clicks.
  * @property {() => boolean} [finish]  Enter ends a part of its work; returns whether there was one.
  * @property {() => void} [end]
@@ -222,7 +222,7 @@ export function createInterface(viewer, hands, container, base = DEFAULTS, editi
   hands.on('speed', (factor) => status.toast(`Speed × ${+factor.toPrecision(2)}`));
   hands.on('leave', () => readout.clear());
   hands.on('gesture', () => readout.clear());
-  readout.onHit = (hit) => tool?.hover?.(hit);
+  readout.onHit = (hit, x, y) => tool?.hover?.(hit, x, y);
 
   // Keys.
   /** @type {{[key: string]: () => void}} */

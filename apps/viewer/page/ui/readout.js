@@ -22,7 +22,7 @@ export class Readout {
     /** @type {{x: number, y: number} | null} */
     this.wanted = null;
     this.busy = false;
-    /** @type {(hit: Hit | null) => void} */
+    /** @type {(hit: Hit | null, x: number, y: number) => void} */
     this.onHit = () => {};
   }
 
@@ -37,7 +37,7 @@ export class Readout {
         this.wanted = null;
         const hit = await this.ui.viewer.pick(at.x, at.y);
         this.#show(hit);
-        this.onHit(hit);
+        this.onHit(hit, at.x, at.y);
       }
       if (tapped && this.hit) this.ui.announce(this.#words(this.hit).join(', '));
     } finally {
