@@ -210,6 +210,24 @@ def test_a_tiny_dag_grows():
     assert np.isinf(e.snapshot().cast([(4.5, 4.5, 20)], [(0, 0, -1)])["t_hit"]).all()
 
 
+def test_a_dag_without_voxels_is_edited_and_has_colors():
+    dag = scene(colors=True)
+    for _ in range(2):
+        e = dag.edit()
+        e.remove_box((0, 0, 0), (SIDE, SIDE, SIDE))
+        dag = e.dag()
+        e = dag.edit()
+        e.add_ball((16, 16, 16), 5, color=(1, 2, 3))
+        edited = e.dag()
+        assert np.array_equal(edited.to_dense(), in_ball((16, 16, 16), 5))
+        assert (edited.colors(edited.coords()) == (1, 2, 3)).all()
+        assert e.snapshot().cast([(16.5, 16.5, 40)], [(0, 0, -1)])["voxel"].tolist() == [[16, 16, 20]]
+        assert len(dag) == 0 and e.undo() and e.dag() == dag
+        dag = edited
+    with pytest.raises(ValueError, match="the DAG has no colours"):
+        voxdag.from_coords(np.empty((0, 3), int), resolution=8).edit().add_ball((1, 2, 3), 1, color=(1, 2, 3))
+
+
 def test_bad_arguments_change_nothing():
     dag = scene()
     e = dag.edit()

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -13,6 +14,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <thread>
 
 #include "sponge.hpp"
 #include "voxdag/core/vec.hpp"
@@ -210,6 +212,32 @@ TEST_F(LiveEdit, ColoursArePaintedAndKept) {
   EXPECT_GT(read_text(path("out.vdag")).size(), plain.size());
 }
 
+TEST_F(LiveEdit, ASceneWithoutVoxelsIsEditedAndKeepsItsColours) {
+  const auto exported = [](const char* file) {
+    EXPECT_EQ(run_voxdag({"export", path(file), "-o", path("voxels.npy"), "-q"}).status, 0);
+    return read_text(path("voxels.npy"));
+  };
+  const std::string
+      all = "remove,halfspace,0,0,99,0,0,1\n",
+      script = "add,ball,8,8,8,5,#ff8000\npaint,ball,8,8,12,3,#0080ff\nadd,ball,20,8,8,3\n";
+  edit("c.vdag", all + script);
+  const std::string expected = exported("out.vdag");
+  for (const std::string form : {"--plain", "--compact"}) {
+    edit("c.vdag", all, {form});
+    std::filesystem::rename(path("out.vdag"), path("empty.vdag"));
+    const std::string nothing = exported("empty.vdag");
+    EXPECT_LT(nothing.size(), expected.size());
+    edit("empty.vdag", script);
+    EXPECT_EQ(exported("out.vdag"), expected);
+    edit("empty.vdag", "add,ball,8,8,8,5\nundo\ngrow,ball,8,8,8,9\ncopy,0,0,0,9,9,9,9,9,9\n");
+    EXPECT_EQ(exported("out.vdag"), nothing);
+  }
+  edit("c.vdag", all, {"--drop-attributes"});
+  expect_failure(run_voxdag({"edit", path("out.vdag"), "--do", "add,ball,8,8,8,5,#ff8000", "-o",
+                             path("none.vdag")}),
+                 1, "the DAG has no colours");
+}
+
 TEST_F(LiveEdit, StampsComeFromFilesMeshesAndLists) {
   const auto is_a = [](Vec3d p, bool is) { return is || in_box(p, {1, 2, 3}, {9, 10, 11}); };
   edit("a.vdag", fmt::format(R"({{"op": "stamp", "file": "{}", "at": [1, 2, 3]}})"
@@ -343,6 +371,27 @@ TEST_F(LiveEdit, AKilledProcessLeavesTheOldFile) {
   close(pipe);
   EXPECT_EQ(read_text(path("killed.vdag")), before);
   EXPECT_EQ(files_like("killed"), 1);
+}
+
+TEST_F(LiveEdit, AProcessThatIsKilledWhileItSavesLeavesTheOldFileOrTheNewOne) {
+  const auto command = [](const char* radius, const char* out) -> std::vector<std::string> {
+    return {"edit", path("a.vdag"), "--do", std::string("remove,ball,8,8,8,") + radius,
+            "-o",   path(out)};
+  };
+  ASSERT_EQ(run_voxdag(command("3", "new.vdag")).status, 0);
+  const std::string after = read_text(path("new.vdag"));
+  ASSERT_EQ(run_voxdag(command("2", "killed.vdag")).status, 0);
+  const std::string before = read_text(path("killed.vdag"));
+  std::string left = before;
+  // Until the program has saved before it is killed.
+  for (int milliseconds = 0; left == before; milliseconds += 1 + milliseconds / 8) {
+    Process process(voxdag_command(command("3", "killed.vdag")));
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    process.send_signal(SIGKILL);
+    process.wait();
+    left = read_text(path("killed.vdag"));
+    ASSERT_TRUE(left == before || left == after) << milliseconds << " ms";
+  }
 }
 
 }  // namespace
