@@ -32,3 +32,13 @@ if(VOXDAG_SANITIZE)
   add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${VOXDAG_SANITIZE};-fno-omit-frame-pointer>")
   add_link_options(-fsanitize=${VOXDAG_SANITIZE})
 endif()
+# The Python module links the libraries.
+set(VOXDAG_PIC ON)
+if(EMSCRIPTEN)
+  set(VOXDAG_PIC OFF)
+  string(REPLACE "-O3" "-O2" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
+  # WebAssembly's own exceptions and vectors: Chromium 95, Firefox 100, Safari 16.4, Node 18 and later.
+  add_compile_options(-fwasm-exceptions -msimd128)
+  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include ${PROJECT_SOURCE_DIR}/cmake/wasm/libcxx14.hpp>")
+  add_link_options(-fwasm-exceptions)
+endif()

@@ -1,12 +1,12 @@
 // Tests that beams, tiles and threads change nothing.
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <numeric>
 #include <random>
 
 #include "cpu/effect_scenes.hpp"
 #include "support/picture_checks.hpp"
+#include "support/with_threads.hpp"
 
 namespace voxdag {
 namespace {
@@ -112,8 +112,7 @@ TEST(RenderEffects, PicturesDependNeitherOnTilesNorThreads) {
     for (const int threads : {1, 3}) {
       options.tile_size = tile_size;
       RenderedImage image;
-      tbb::task_arena(threads).execute(
-          [&] { image = render_image(dag.view(), test_grid(kLevels), options); });
+      with_threads(threads, [&] { image = render_image(dag.view(), test_grid(kLevels), options); });
       expect_same_picture(image, expected);
       EXPECT_EQ(image.rays, expected.rays);
     }

@@ -1,6 +1,5 @@
 // Tests pictures of ESVOs.
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include "support/brute_svdag.hpp"
 #include "support/picture_checks.hpp"
 #include "support/voxel_sets.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/srgb.hpp"
@@ -71,7 +71,7 @@ TEST(RenderEsvo, PixelsDoNotDependOnThreadsOrTiles) {
   const RenderedImage first = render_image(esvo.view(), picture_grid(), options);
   options.tile_size = 7;
   RenderedImage other;
-  tbb::task_arena(3).execute([&] { other = render_image(esvo.view(), picture_grid(), options); });
+  with_threads(3, [&] { other = render_image(esvo.view(), picture_grid(), options); });
   expect_same_picture(first, other);
   EXPECT_EQ(first.rays, other.rays);
 }

@@ -1,12 +1,12 @@
 #include "voxdag/cpu/render_image.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <cmath>
 
 #include "support/brute_svdag.hpp"
 #include "support/picture_checks.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/cpu/post_filter.hpp"
 
 namespace voxdag {
@@ -55,8 +55,7 @@ TEST(RenderImage, PixelsDoNotDependOnThreads) {
   RenderedImage first;
   for (const int threads : {1, 2, 7}) {
     RenderedImage image;
-    tbb::task_arena(threads).execute(
-        [&] { image = render_image(dag.view(), picture_grid(), options); });
+    with_threads(threads, [&] { image = render_image(dag.view(), picture_grid(), options); });
     if (threads == 1) first = image;
     EXPECT_EQ(image.rgb, first.rgb);
     EXPECT_EQ(image.depth, first.depth);

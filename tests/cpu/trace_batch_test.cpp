@@ -1,12 +1,12 @@
 #include "voxdag/cpu/trace_batch.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <limits>
 #include <random>
 
 #include "support/brute_svdag.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 
@@ -38,7 +38,7 @@ TEST(TraceBatch, EqualsSingleCastsForAnyNumberOfThreads) {
   for (const Ray& ray : rays) expected.push_back(closest_hit(SvdagNodes(dag.view()), grid, ray));
   for (const int threads : {1, 2, 7}) {
     std::vector<Hit> hits(rays.size());
-    tbb::task_arena(threads).execute([&] { trace_batch(dag.view(), grid, rays, hits); });
+    with_threads(threads, [&] { trace_batch(dag.view(), grid, rays, hits); });
     EXPECT_EQ(hits, expected) << threads << " threads";
   }
 }

@@ -1,11 +1,11 @@
 #include "voxdag/mesh_view/mesh_view_source.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <cmath>
 
 #include "meshes.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
 
@@ -173,8 +173,7 @@ TEST_F(MeshViewSourceTest, SamplesDoNotDependOnTilesOrThreads) {
   const auto whole = samples_of(source, camera);
   constexpr int kTile = 8;
   constexpr std::size_t kColumns = kWidth / kTile + 1, kRows = kHeight / kTile + 1;
-  tbb::task_arena arena(3);
-  arena.execute([&] {
+  with_threads(3, [&] {
     parallel_for(kColumns * kRows, [&](std::size_t i) {
       ViewTile tile{static_cast<int>(i % kColumns) * kTile,
                     static_cast<int>(i / kColumns) * kTile,

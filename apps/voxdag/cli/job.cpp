@@ -1,7 +1,5 @@
 #include "cli/job.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -14,9 +12,9 @@ namespace {
 
 /// Returns the share of this rank in the processors of its machine, unless the launcher has bound
 /// it to fewer.
-int threads_of_rank(int ranks_here) {
-  const auto processors = static_cast<int>(std::thread::hardware_concurrency());
-  return std::max(1, std::min(tbb::this_task_arena::max_concurrency(), processors / ranks_here));
+std::size_t threads_of_rank(int ranks_here) {
+  const std::size_t processors = std::thread::hardware_concurrency();
+  return thread_count(processors / static_cast<std::size_t>(ranks_here));
 }
 
 }  // namespace
@@ -30,7 +28,7 @@ Job::Job(Session& session) : progress_(session.progress), ranks_(join_ranks(&ses
   // Also with --threads, because all ranks must take part, and their options may differ.
   const int here = ranks_per_machine(*ranks_).here;
   if (session.threads == 0)
-    threads_.emplace(tbb::global_control::max_allowed_parallelism, threads_of_rank(here));
+    threads_.emplace(threads_of_rank(here));
 }
 
 bool Job::fails_first() {

@@ -1,11 +1,10 @@
 #pragma once
 /// The processes of a job that mpirun or srun started, for subcommands that share their work.
-#include <tbb/global_control.h>
-
 #include <memory>
 #include <optional>
 
 #include "cli/session.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/cluster/ranks.hpp"
 
 namespace voxdag::cli {
@@ -32,7 +31,7 @@ class Job {
  private:
   const Progress& progress_;
   std::unique_ptr<Ranks> ranks_;
-  std::optional<tbb::global_control> threads_;
+  std::optional<ThreadLimit> threads_;
 };
 
 /// Joins the job of this process, which lives as long as the session. Call it once.

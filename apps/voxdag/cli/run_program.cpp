@@ -1,7 +1,6 @@
 #include "cli/run_program.hpp"
 
 #include <fmt/core.h>
-#include <tbb/global_control.h>
 
 #include <cerrno>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include "cli/command_line.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/job.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -42,9 +42,8 @@ std::string output_failure(const std::exception& error) {
 }
 
 void work(Session& session) {
-  std::optional<tbb::global_control> threads;
-  if (session.threads > 0)
-    threads.emplace(tbb::global_control::max_allowed_parallelism, session.threads);
+  std::optional<ThreadLimit> threads;
+  if (session.threads > 0) threads.emplace(static_cast<std::size_t>(session.threads));
   session.bar.enable(!session.quiet);
   const std::function<void()> chosen = session.work;  // It may run other commands.
   chosen();

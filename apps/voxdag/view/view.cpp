@@ -9,6 +9,7 @@
 #include "view/page_view.hpp"
 #include "view/serve_scene.hpp"
 #include "view/shown_scene.hpp"
+#include "viewer/edit/save_edited.hpp"
 #include "voxdag/file/vdag_container.hpp"
 
 namespace voxdag::cli {
@@ -45,16 +46,7 @@ void edit(const ViewArguments& arguments, const std::filesystem::path& output, S
   const ReducedDag& dag = scene.dag();
   const Work work(scene.memory(), &session.progress);
   const auto save = [&](const EditSnapshot& version, const std::filesystem::path& path) {
-    VdagMetadata metadata = dag.metadata();
-    std::string& edits = metadata.build["edits"];
-    edits += (edits.empty() ? "" : "; ") + std::string("in the viewer");
-    Svdag voxels = version.svdag(work);
-    DagAttributes attributes = version.attributes(voxels.view(), {}, work);
-    for (auto* values : {&metadata.attributes.colors, &metadata.attributes.normals})
-      if (*values) (*values)->errors.reset();
-    if (attributes.view().is_empty() && !voxels.view().is_empty()) metadata.attributes = {};
-    const DagModel model(std::move(voxels), std::move(attributes), std::move(metadata), work);
-    model.save(path, is_compact, work);
+    save_edited(version, dag.metadata(), path, is_compact, work);
   };
   EditSession editing({dag.dag(), dag.attributes()}, dag.metadata().grid, output, save, work,
                       scene.is_seeded());

@@ -1,11 +1,10 @@
 #include "voxdag/cluster/mailboxes.hpp"
 
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cstring>
 #include <utility>
+
+#include "voxdag/core/parallel/thread_count.hpp"
 
 namespace voxdag {
 namespace {
@@ -124,9 +123,7 @@ std::uint32_t mailboxes_of(Ranks& ranks, std::uint64_t bytes, const MemoryBudget
   for (const std::uint64_t of_rank : ranks.all_gather({&left, 1})) left = std::min(left, of_rank);
   // Threads handle mailboxes side by side; little data is not worth many files.
   constexpr std::uint64_t kLittle = std::uint64_t{8} << 20;
-  const auto threads = static_cast<std::uint64_t>(std::min<std::size_t>(
-                 static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()),
-                 tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))),
+  const auto threads = static_cast<std::uint64_t>(thread_count()),
              count = static_cast<std::uint64_t>(ranks.count());
   const std::uint64_t needed = bytes / std::max<std::uint64_t>(left / 4 / threads, 1) + 1;
   // So a mailbox has fewer than 2^32 different records, if each counts for 16 bytes or more.

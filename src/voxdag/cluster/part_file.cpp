@@ -1,4 +1,5 @@
 #include "voxdag/cluster/part_file.hpp"
+#include "voxdag/core/checked_size.hpp"
 
 #include <algorithm>
 
@@ -23,7 +24,7 @@ void write_piece(WorkFileWriter& file, const CellRange& range, const SvdagView& 
   constexpr std::byte kZeros[8] = {};
   file.write_value(header);
   file.write(std::as_bytes(std::span(dag.nodes, dag.node_words())));
-  file.write({kZeros, padding(dag.node_words())});
+  file.write({kZeros, checked_size(padding(dag.node_words()))});
   file.write(std::as_bytes(std::span(dag.leaf_blocks, dag.leaf_block_count)));
 }
 

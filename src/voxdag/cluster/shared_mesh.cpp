@@ -1,7 +1,5 @@
 #include "voxdag/cluster/shared_mesh.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <bit>
 #include <mutex>
@@ -12,6 +10,7 @@
 #include "voxdag/core/float_origin.hpp"
 #include "voxdag/core/io/mapped_arrays.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/formats/readers/used_vertices.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
@@ -140,7 +139,7 @@ template <class T, class Read>
 void SharedMesh::write_values(std::uint64_t task, std::uint64_t ChunkCounts::*count,
                               WorkFileWriter& file, const Read& read) {
   const std::uint64_t last = first_chunk(task + 1);
-  const auto step = 2 * static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+  const auto step = 2 * thread_count();
   for (std::uint64_t first = first_chunk(task); first < last; first += step) {
     const std::uint64_t end = std::min(first + step, last), begin = starts_[first].*count;
     CountedVector<T> values(starts_[end].*count - begin, T{},

@@ -1,14 +1,14 @@
 #include "voxdag/cluster/triangle_segments.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "voxdag/builders/voxelize/cell_finder.hpp"
+#include "voxdag/core/checked_size.hpp"
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/core/parallel/polled_sort.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 
 namespace voxdag {
 namespace {
@@ -99,7 +99,7 @@ void write_sorted(WorkFileWriter& file, const PageVector<QuantizedTriangle>& tri
     file.write_values<std::uint32_t>(places);
   }
   constexpr std::byte kZeros[8] = {};
-  file.write({kZeros, (8 - file.size() % 8) % 8});
+  file.write({kZeros, checked_size((8 - file.size() % 8) % 8)});
   file.write_values<SegmentCell>(cells);
 }
 
@@ -123,7 +123,7 @@ void write_segment(const WorkFolder& folder, std::uint64_t index, const SharedMe
   PageVector<Entry> entries(work.memory);
   // A few batches at a time, which are then joined in order.
   const std::uint64_t step =
-      2 * kBatch * static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+      2 * kBatch * thread_count();
   for (std::uint64_t begin = first; begin < last; begin += step) {
     const std::uint64_t end = std::min(last, begin + step);
     std::vector<Batch> batches((end - begin + kBatch - 1) / kBatch);
@@ -149,11 +149,11 @@ TriangleSegment::TriangleSegment(WorkFile file) : file_(std::move(file)) {
   const std::byte* at = file_.bytes().data();
   const auto& header = *reinterpret_cast<const SegmentHeader*>(at);
   at += sizeof header;
-  triangles_ = {reinterpret_cast<const QuantizedTriangle*>(at), header.triangles};
+  triangles_ = {reinterpret_cast<const QuantizedTriangle*>(at), checked_size(header.triangles)};
   at += triangles_.size_bytes();
-  entries_ = {reinterpret_cast<const std::uint32_t*>(at), header.entries};
+  entries_ = {reinterpret_cast<const std::uint32_t*>(at), checked_size(header.entries)};
   at = file_.bytes().data() + file_.bytes().size() - header.cells * sizeof(SegmentCell);
-  cells_ = {reinterpret_cast<const SegmentCell*>(at), header.cells};
+  cells_ = {reinterpret_cast<const SegmentCell*>(at), checked_size(header.cells)};
 }
 
 std::span<const SegmentCell> TriangleSegment::cells_in(const CellRange& range, int level) const {

@@ -1,25 +1,20 @@
 #pragma once
 /// Arrays on pages of their own, for large data. Freed pages go back to the system immediately.
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <new>
 #include <type_traits>
 #include <utility>
 
+#include "voxdag/core/io/pages.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/thread_sanitizer.hpp"
 
 namespace voxdag {
 
-inline constexpr std::size_t kHugePage = std::size_t{2} << 20;
-
-/// Like std::vector, for trivial types. It grows by mremap, so the old and the new array never
-/// exist at the same time. A budget counts the pages. Functions that grow it throw OverMemory or
+/// Like std::vector, for trivial types. When it grows, the old and the new array need not exist at
+/// the same time. A budget counts the pages. Functions that grow it throw OverMemory or
 /// std::bad_alloc, and leave it unchanged if they throw. Move-only.
 template <class T>
 class PageVector {
@@ -36,22 +31,9 @@ class PageVector {
     PageVector array;
     const std::size_t bytes = page_bytes(count);
     if (bytes == 0) return array;
-    // Huge pages must be aligned, but mmap does not guarantee that. So this maps more and unmaps
-    // the ends.
-    const std::size_t slack = bytes >= kHugePage ? kHugePage : 0;
-    void* const memory = map_pages(bytes + slack);
-    if (memory == MAP_FAILED) throw std::bad_alloc();
-    auto* begin = static_cast<char*>(memory);
-    if (slack != 0) {
-      const std::size_t head = -reinterpret_cast<std::uintptr_t>(begin) & (kHugePage - 1);
-      if (head != 0) ::munmap(begin, head);
-      ::munmap(begin + head + bytes, slack - head);
-      begin += head;
-#ifdef MADV_HUGEPAGE
-      ::madvise(begin, bytes, MADV_HUGEPAGE);
-#endif
-    }
-    array.data_ = reinterpret_cast<T*>(begin);
+    void* const memory = map_pages(bytes, /*may_be_huge=*/true);
+    if (memory == nullptr) throw std::bad_alloc();
+    array.data_ = static_cast<T*>(memory);
     array.size_ = count;
     array.bytes_ = bytes;
     return array;
@@ -100,20 +82,19 @@ class PageVector {
     const std::size_t bytes = page_bytes(size_);
     if (bytes == 0) return release();
     if (bytes == bytes_) return;
-    // Shrinking in place does not fail.
-    if (::mremap(data_, bytes_, bytes, 0) == MAP_FAILED) return;
+    if (!shrink_pages(data_, bytes_, bytes)) return;
     if (budget_ != nullptr) budget_->release(bytes_ - bytes);
     bytes_ = bytes;
   }
   /// Gives the memory back to the system; the elements become zero. Other threads may read them at
   /// the same time, and see old values or zeros.
   void discard() {
-    if (data_ != nullptr) ::madvise(data_, bytes_, MADV_DONTNEED);
+    if (data_ != nullptr) discard_pages(data_, bytes_);
   }
   /// Gives all memory back to the system, and removes all elements.
   void release() noexcept {
     if (data_ == nullptr) return;
-    ::munmap(data_, bytes_);
+    unmap_pages(data_, bytes_);
     if (budget_ != nullptr) budget_->release(bytes_);
     data_ = nullptr;
     size_ = bytes_ = 0;
@@ -127,8 +108,6 @@ class PageVector {
   }
 
  private:
-  static constexpr std::size_t kPage = 4096;
-
   static std::size_t page_bytes(std::size_t count) {
     if (count > static_cast<std::size_t>(-1) / sizeof(T) - kPage) throw std::bad_alloc();
     return (count * sizeof(T) + kPage - 1) & ~(kPage - 1);
@@ -143,31 +122,14 @@ class PageVector {
     const std::size_t more = bytes_ < kSmall ? bytes_ : bytes_ / 8;
     const std::size_t bytes = std::max(page_bytes(count), page_bytes((bytes_ + more) / sizeof(T)));
     if (budget_ != nullptr) budget_->reserve(bytes - bytes_);
-    void* const memory = data_ == nullptr ? map_pages(bytes) : move_pages(bytes);
-    if (memory == MAP_FAILED) {
+    void* const memory =
+        data_ == nullptr ? map_pages(bytes) : resize_pages(data_, bytes_, bytes);
+    if (memory == nullptr) {
       if (budget_ != nullptr) budget_->release(bytes - bytes_);
       throw std::bad_alloc();
     }
     data_ = static_cast<T*>(memory);
     bytes_ = bytes;
-  }
-
-  static void* map_pages(std::size_t bytes) {
-    return ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
-                  MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  }
-  void* move_pages(std::size_t bytes) {
-#ifdef VOXDAG_TSAN
-    // ThreadSanitizer does not follow mremap: it would take the last user of these addresses for
-    // one of this array.
-    void* const memory = map_pages(bytes);
-    if (memory == MAP_FAILED) return memory;
-    std::memcpy(memory, data_, size_ * sizeof(T));
-    ::munmap(data_, bytes_);
-    return memory;
-#else
-    return ::mremap(data_, bytes_, bytes, MREMAP_MAYMOVE);
-#endif
   }
 
   MemoryBudget* budget_ = nullptr;

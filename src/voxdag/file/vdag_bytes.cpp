@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cstring>
 
+#include "voxdag/core/checked_size.hpp"
 #include "voxdag/core/io/checksum.hpp"
 #include "voxdag/file/vdag_format.hpp"
 
@@ -74,7 +75,7 @@ VdagBytes::VdagBytes(const std::vector<OutputChunk>& chunks)
   add(head_);
   for (const OutputChunk& chunk : chunks) {
     for (const auto& part : chunk.parts) add(part);
-    add({kZeros, vdag_align(chunk.length()) - chunk.length()});
+    add({kZeros, checked_size(vdag_align(chunk.length()) - chunk.length())});
   }
 }
 

@@ -1,20 +1,20 @@
 #include "voxdag/algebra/attributes/placed_attributes.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include <map>
 #include <set>
 
 #include "algebra/voxel_grid.hpp"
 #include "support/number_colors.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/algebra/combine.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/algebra/grow.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/reorient.hpp"
 #include "voxdag/algebra/shift.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/stored/svdag/for_each_voxel.hpp"
 
@@ -298,11 +298,9 @@ TEST(PlacedAttributes, BytesAreEqualOnAnyNumberOfThreads) {
   const AttributeLayer layer{colors.view(), {}, {1, 0, 5}};
   const Svdag moved = shift(dag.view(), layer.offset, 7);
   const auto bytes_on = [&](int threads) {
-    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 8);
+    const ThreadLimit control(8);
     DagAttributes result;
-    tbb::task_arena(threads).execute([&] {
-      result = placed_attributes(moved.view(), {&layer, 1});
-    });
+    with_threads(threads, [&] { result = placed_attributes(moved.view(), {&layer, 1}); });
     return std::tuple(result.colors.words, result.normals.words, result.materials.words);
   };
   const auto one = bytes_on(1);

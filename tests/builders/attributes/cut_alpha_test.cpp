@@ -1,9 +1,9 @@
 #include "voxdag/builders/attributes/cut_alpha.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include "support/textured_square.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
@@ -52,8 +52,8 @@ TEST(CutAlpha, AnyNumberOfThreadsGivesTheSameVoxels) {
   const HalfVisible of;
   const SurfaceShading shading(of.mesh, of.appearance);
   const auto cut = [&](int threads) {
-    return tbb::task_arena(threads).execute(
-        [&] { return *cut_alpha(of.mesh, of.grid, of.dag.view(), shading); });
+    return with_threads(threads,
+                        [&] { return *cut_alpha(of.mesh, of.grid, of.dag.view(), shading); });
   };
   EXPECT_EQ(cut(1), cut(4));
 }

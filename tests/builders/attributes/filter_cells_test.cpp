@@ -1,7 +1,6 @@
 #include "voxdag/builders/attributes/filter_cells.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 
 #include "support/clipped_polygon.hpp"
 #include "support/memory_limit.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
@@ -181,8 +181,9 @@ TEST(FilterCells, AnyNumberOfThreadsGivesTheSameAttributes) {
   options.colors = options.normals = true;
   options.finest_level = 8;
   const auto build = [&](int threads) {
-    return tbb::task_arena(threads).execute(
-        [&] { return build_attributes(scene.mesh, scene.grid, dag.view(), &shading, options); });
+    return with_threads(threads, [&] {
+      return build_attributes(scene.mesh, scene.grid, dag.view(), &shading, options);
+    });
   };
   const DagAttributes one = build(1), four = build(4);
   EXPECT_GT(one.index.cells, 3u << 16);  // several tasks

@@ -1,7 +1,6 @@
 #include "voxdag/builders/attributes/filter_materials.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <cmath>
 #include <map>
@@ -9,6 +8,7 @@
 
 #include "support/clipped_polygon.hpp"
 #include "support/memory_limit.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
@@ -110,7 +110,7 @@ TEST(FilterMaterials, AnyNumberOfThreadsGivesTheSameIds) {
   const MaterialMesh scene(40, 8, 300);
   const Svdag dag = scene.dag();
   const auto filter = [&](int threads) {
-    return tbb::task_arena(threads).execute([&] { return scene.filter(dag.view(), 8); });
+    return with_threads(threads, [&] { return scene.filter(dag.view(), 8); });
   };
   const MaterialIds one = filter(1), four = filter(4);
   EXPECT_GT(one.values, 3u << 16);  // several tasks

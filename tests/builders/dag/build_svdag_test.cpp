@@ -2,13 +2,12 @@
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include <random>
 
 #include "support/brute_svdag.hpp"
 #include "support/random_triangles.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/builders/voxelize/overlap.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 #include "voxdag/stored/svdag/validate_svdag.hpp"
@@ -143,8 +142,7 @@ TEST(BuildSvdag, TheWordsDependOnNeitherThreadsNorVectorWidth) {
   const Mesh mesh = mesh_of(random_triangles(random, levels, 60));
   const Svdag expected = build_svdag(mesh, unit_grid(levels)).dag;
   for (const int threads : {1, 2, 7}) {
-    tbb::task_arena arena(threads);
-    arena.execute([&] {
+    with_threads(threads, [&] {
       EXPECT_EQ(build_svdag(mesh, unit_grid(levels)).dag, expected) << threads << " threads";
       EXPECT_EQ(build_svdag(mesh, unit_grid(levels), BuildMethod::kSort).dag, expected)
           << threads << " threads";

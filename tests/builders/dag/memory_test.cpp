@@ -1,7 +1,6 @@
 /// Tests that memory limits of builds are kept, or refused with a correct estimate. It is a
 /// separate program, because it measures the process's resident memory.
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "support/peak_memory.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/dag/check_cover.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
@@ -101,8 +101,8 @@ TEST(BuildMemory, ABudgetCountsWhatABuildTakes) {
     MemoryBudget budget;
     const std::uint64_t before = resident_bytes();
     reset_peak();
-    tbb::task_arena(2).execute(
-        [&] { build_svdag(test.mesh, fit_grid(test.mesh, test.levels), test.method, &budget); });
+    with_threads(
+        2, [&] { build_svdag(test.mesh, fit_grid(test.mesh, test.levels), test.method, &budget); });
     const double taken = static_cast<double>(peak_bytes()) - static_cast<double>(before);
     EXPECT_LT(taken, 1.1 * static_cast<double>(budget.peak() + 6 * kMebibyte)) << test.name;
     EXPECT_EQ(budget.used(), 0u);

@@ -1,7 +1,6 @@
 #include "voxdag/builders/dag/node_store.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <map>
 #include <random>
@@ -9,6 +8,7 @@
 
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/core/parallel/per_thread.hpp"
 
 namespace voxdag {
 namespace {
@@ -26,7 +26,7 @@ TEST(NodeStore, EqualWordsFromAnyThreadGetOneId) {
   NodeStore store(budget);
   constexpr std::uint32_t kNodes = 200000, kDistinct = 50000;
   std::vector<NodeId> ids(kNodes);
-  tbb::enumerable_thread_specific<NodeStore::Run> runs;
+  PerThread<NodeStore::Run> runs;
   parallel_for(kNodes, 64, [&](std::size_t i) {
     const auto words = node(static_cast<std::uint32_t>(i % kDistinct));
     const int count = static_cast<int>(words.size());

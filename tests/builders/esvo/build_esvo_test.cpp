@@ -1,13 +1,13 @@
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 
 #include "support/displaced_crate.hpp"
 #include "support/grid_mesh.hpp"
 #include "support/random_triangles.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/esvo/build/check_esvo.hpp"
 #include "voxdag/core/morton.hpp"
@@ -187,8 +187,7 @@ TEST(BuildEsvo, SameBytesForAnyNumberOfThreads) {
   EsvoOptions options;
   options.pack.max_slots = 500;
   const auto build = [&](int threads) {
-    tbb::task_arena arena(threads);
-    return arena.execute([&] { return build_esvo(mesh, unit_grid(8), options); });
+    return with_threads(threads, [&] { return build_esvo(mesh, unit_grid(8), options); });
   };
   const Esvo one = build(1);
   EXPECT_EQ(build(2), one);

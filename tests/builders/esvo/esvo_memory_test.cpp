@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <cmath>
 #include <optional>
@@ -7,6 +6,7 @@
 
 #include "support/displaced_crate.hpp"
 #include "support/grid_mesh.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
 #include "voxdag/core/memory_budget.hpp"
 
@@ -26,10 +26,9 @@ const Grid kMemoryGrid{8, {0, 0, 0}, 1.0, kSubvoxels};
 
 /// Builds on four threads. Returns nothing if the memory is too small. Does not count the blocks.
 std::optional<std::vector<std::uint64_t>> build_within(const Mesh& mesh, MemoryBudget* memory) {
-  tbb::task_arena arena(4);
   try {
     EsvoMemory sink;
-    arena.execute([&] { build_esvo(mesh, kMemoryGrid, {}, nullptr, nullptr, sink, memory); });
+    with_threads(4, [&] { build_esvo(mesh, kMemoryGrid, {}, nullptr, nullptr, sink, memory); });
     return sink.take();
   } catch (const OverMemory&) {
     return std::nullopt;

@@ -1,12 +1,12 @@
 #include "voxdag/builders/voxelize/duplicate_triangles.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <map>
 #include <random>
 
+#include "support/with_threads.hpp"
 #include "voxdag/core/grid.hpp"
 
 namespace voxdag {
@@ -43,7 +43,7 @@ TEST(FindDuplicateTriangles, AllButTheFirstTriangleWithTheSameCorners) {
   const Mesh mesh = crowded_mesh(20000);
   const QuantizedMesh quantized(mesh, unit_grid());
   for (const int threads : {1, 4}) {
-    tbb::task_arena(threads).execute([&] {
+    with_threads(threads, [&] {
       const IndexSet duplicates = find_duplicate_triangles(quantized);
       std::map<Key, std::size_t> first;
       for (std::size_t i = 0; i < mesh.triangles.size(); ++i)

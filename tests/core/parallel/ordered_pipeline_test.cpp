@@ -1,13 +1,14 @@
 #include "voxdag/core/parallel/ordered_pipeline.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
+
+#include "support/with_threads.hpp"
 
 namespace voxdag {
 namespace {
@@ -29,8 +30,7 @@ class Counted {
 
 template <class Make, class Use>
 void run(std::size_t count, Work work, const Make& make, const Use& use) {
-  tbb::task_arena arena(4);
-  arena.execute([&] { ordered_pipeline(count, 8, work, make, use); });
+  with_threads(4, [&] { ordered_pipeline(count, 8, work, make, use); });
 }
 
 TEST(OrderedPipeline, UsesEveryResultInOrder) {

@@ -1,13 +1,14 @@
 #include "voxdag/core/parallel/polled_sort.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <random>
 #include <vector>
+
+#include "support/with_threads.hpp"
 
 namespace voxdag {
 namespace {
@@ -22,8 +23,7 @@ std::vector<std::uint64_t> random_values(std::size_t count) {
 /// Sorts `values` on four threads.
 template <class Less>
 void sort(std::vector<std::uint64_t>& values, Work work, const Less& less) {
-  tbb::task_arena arena(4);
-  arena.execute([&] { polled_sort(values.begin(), values.end(), work, less); });
+  with_threads(4, [&] { polled_sort(values.begin(), values.end(), work, less); });
 }
 
 TEST(PolledSort, SortsAsTheStandardLibraryDoes) {

@@ -1,12 +1,12 @@
 /// Tests that the work of readers grows with the size of their input, not with its square.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <ctime>
 #include <functional>
 
 #include "formats/readers/appearance_files.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 
 namespace voxdag {
 namespace {
@@ -34,7 +34,7 @@ class ReaderCost : public ReadAppearance {
   /// below 12, n² a factor of 64. `make(n)` writes the files of an input of size `n` and returns
   /// the mesh file.
   void expect_no_square(int n, const std::function<std::filesystem::path(int)>& make) {
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const ThreadLimit one(1);
     constexpr double kClock = 0.004;  // Time that the clock and the system may add.
     // Page faults of a busy machine count as time of this process: the best of some tries counts.
     double small = 0, large = 1;

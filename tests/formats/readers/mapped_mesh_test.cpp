@@ -1,5 +1,4 @@
 /// Tests that meshes whose arrays are in files equal meshes in memory, and need little memory.
-#include <tbb/task_arena.h>
 
 #include <functional>
 
@@ -8,6 +7,7 @@
 #include "support/file_size_limit.hpp"
 #include "support/grid_mesh.hpp"
 #include "support/temp_dir.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
 
@@ -199,7 +199,7 @@ TEST_P(MappedMesh, EqualsTheMeshInMemory) {
 TEST_P(MappedMesh, IsReadWithinABudgetThatIsTooSmallForTheMeshInMemory) {
   const auto file = write(bytes());
   const std::uint64_t limit = std::uint64_t{2} << 20;
-  tbb::task_arena(2).execute([&] {  // Each thread needs scratch memory.
+  with_threads(2, [&] {  // Each thread needs scratch memory.
     MemoryBudget budget(limit), too_small(limit);
     EXPECT_THROW(read_mesh(file, {.work = &too_small}), OverMemory);
     const Mesh mesh = read_mesh(file, {.work = &budget, .arrays = &arrays_});

@@ -1,13 +1,13 @@
 #include "voxdag/formats/readers/read_mesh.hpp"
 
 #include <sys/stat.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include <fstream>
 
 #include "formats/readers/mesh_text.hpp"
 #include "support/temp_dir.hpp"
+#include "support/with_threads.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 #include "voxdag/formats/readers/stl/stl_reader.hpp"
@@ -134,10 +134,8 @@ TEST_F(ReadMesh, TheNumberOfThreadsChangesNothing) {
   ply += "\nproperty list uchar int vertex_indices\nend_header\n" + ply_rows + ply_faces;
   stl += "endsolid\n";
   const auto read_with = [](int threads, const Reader& reader, const std::string& text) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(threads));
-    tbb::task_arena arena(threads);
-    return arena.execute([&] { return read_text(reader, text); });
+    const ThreadLimit limit(static_cast<std::size_t>(threads));
+    return with_threads(threads, [&] { return read_text(reader, text); });
   };
   for (const auto& [reader, text] :
        {std::pair<Reader, const std::string&>{read_obj, obj}, {read_ply, ply}, {read_stl, stl}}) {

@@ -2,13 +2,13 @@
 // bits are safe to read.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
-#include <tbb/global_control.h>
 
 #include "support/brute_svdag.hpp"
 #include "support/compact_walk.hpp"
 #include "support/random_bits.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/morton.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/stored/compact/compact_bytes.hpp"
 #include "voxdag/stored/compact/compact_parts.hpp"
 #include "voxdag/stored/compact/encode_svdag.hpp"
@@ -81,7 +81,7 @@ TEST(CompactSvdag, HasTheSameBitsForAnyNumberOfThreads) {
   const Svdag dag = brute_svdag(8, repeated_plane(8));
   const CompactSvdag compact = encode_svdag(dag.view());
   for (const std::size_t threads : {1u, 3u, 8u}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     const CompactSvdag again = encode_svdag(dag.view());
     EXPECT_EQ(again.stream, compact.stream);
     EXPECT_EQ(compact_head(again), compact_head(compact));

@@ -31,13 +31,13 @@
 /// The walk calls child() and run() for the children of a cell without a run, and values() for
 /// voxels without a run. The functions are const, thread-safe, and depend on their arguments alone.
 /// Cells below level m have no NumberedCell::number.
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <bit>
 
 #include "voxdag/algebra/attributes/derived_values.hpp"
 #include "voxdag/core/parallel/ordered_pipeline.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 
 namespace voxdag {
 namespace detail {
@@ -153,7 +153,7 @@ std::optional<DagAttributes> derive_in_precision(const SvdagView& dag, int fines
   for (std::size_t i = 0; i < tops.size(); ++i)
     for (std::uint64_t begin = 0; !tops[i].is_inner && begin < tops[i].cells; begin += kStepCells)
       steps.push_back({i, begin, std::min(kStepCells, tops[i].cells - begin)});
-  const std::size_t waiting = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  const std::size_t waiting = 2 * thread_count();
   const MemoryReservation lists(work.memory,
                                 waiting * std::min(kStepCells, derived.index().cells) * 16);
   struct Done {

@@ -1,6 +1,7 @@
 #include "voxdag/builders/attributes/cell_filter.hpp"
 
 #include <bit>
+#include "voxdag/core/checked_size.hpp"
 
 namespace voxdag {
 namespace {
@@ -41,10 +42,10 @@ SurfaceSum CellFilter::join(const NumberedCell& cell, std::vector<VoxelValue>& v
     for (std::uint32_t left = children_of(dag_, cell); left != 0; left &= left - 1)
       sum.add(join(child_of(dag_, index_, cell, std::countr_zero(left)), values));
   if (!(sum.area > 0)) return sum;
-  const auto own = values.begin() + static_cast<std::ptrdiff_t>(cell.number - first_);
+  VoxelValue* const own = values.data() + static_cast<std::ptrdiff_t>(cell.number - first_);
   *own = voxel_value(sum);
   if (cell.level != index_.finest_level)
-    fill_unseen({own + 1, cells_in(dag_, index_, cell) - 1}, *own);
+    fill_unseen({own + 1, checked_size(cells_in(dag_, index_, cell) - 1)}, *own);
   return sum;
 }
 

@@ -1,7 +1,5 @@
 #include "voxdag/builders/attributes/check_attributes.hpp"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,6 +12,7 @@
 #include "voxdag/builders/pieces/duplicate_surfaces.hpp"
 #include "voxdag/builders/pieces/split_triangles.hpp"
 #include "voxdag/core/morton.hpp"
+#include "voxdag/core/parallel/per_thread.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
 #include "voxdag/stored/attributes/cell_index_lookup.hpp"
@@ -134,7 +133,7 @@ void add(ValueCheck& check, double error, const VisitedCell& cell) {
 class SampleWalk {
  public:
   SampleWalk(const SvdagView& cover, const CellIndexView& index, const TriangleSource& source,
-             tbb::enumerable_thread_specific<CellComparer>& comparers, Work work)
+             PerThread<CellComparer>& comparers, Work work)
       : dag_(cover), index_(index), source_(source), comparers_(comparers), work_(work) {}
 
   void compare(std::span<const std::uint64_t> numbers, AttributeCheck& check) {
@@ -188,7 +187,7 @@ class SampleWalk {
   const SvdagView& dag_;
   const CellIndexView& index_;
   const TriangleSource& source_;
-  tbb::enumerable_thread_specific<CellComparer>& comparers_;
+  PerThread<CellComparer>& comparers_;
   Work work_;
 };
 
@@ -230,7 +229,7 @@ AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const Colore
   // Materials count all triangles; CellComparer leaves the repeated ones out for colours.
   const TriangleSource all{grid, quantized, no_open_edges, nullptr, no_duplicates};
   const TriangleSource source{grid, quantized, no_open_edges, nullptr, duplicates};
-  tbb::enumerable_thread_specific<CellComparer> comparers(
+  PerThread<CellComparer> comparers(
       [&] { return CellComparer(colored, dag, index, source, all, materials, shading); });
   SampleWalk walk(dag, index, all, comparers, work);
   const std::uint64_t cells = index.cells;

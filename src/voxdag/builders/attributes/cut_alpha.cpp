@@ -1,7 +1,5 @@
 #include "voxdag/builders/attributes/cut_alpha.hpp"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <bit>
 #include <vector>
@@ -10,6 +8,7 @@
 #include "voxdag/algebra/voxels/morton_builder.hpp"
 #include "voxdag/builders/attributes/filter_tasks.hpp"
 #include "voxdag/core/morton.hpp"
+#include "voxdag/core/parallel/per_thread.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
 
 namespace voxdag {
@@ -92,7 +91,7 @@ std::optional<Svdag> cut_alpha(const Mesh& mesh, const Grid& grid, const SvdagVi
   const MemoryReservation index_bytes(work.memory, index.view().bytes());
   const CellIndexView cells = index.view();
   NumberedTopCells top_cells = list_top_cells(dag, cells, source, work);
-  tbb::enumerable_thread_specific<MaskedVoxels> finders(
+  PerThread<MaskedVoxels> finders(
       [&] { return MaskedVoxels(dag, cells, source, shading, work.memory); });
   MortonBuilder masked(dag.levels, work.memory);
   bool is_masked = false;

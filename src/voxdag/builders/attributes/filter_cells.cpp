@@ -1,13 +1,12 @@
 #include "voxdag/builders/attributes/filter_cells.hpp"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <array>
 
 #include "voxdag/builders/attributes/cell_filter.hpp"
 #include "voxdag/builders/attributes/filter_tasks.hpp"
 #include "voxdag/builders/pieces/duplicate_surfaces.hpp"
+#include "voxdag/core/parallel/per_thread.hpp"
 
 namespace voxdag {
 namespace {
@@ -65,7 +64,7 @@ void filter_cells(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
   const std::vector<std::uint8_t> no_open_edges(quantized.triangle_count());
   const TriangleSource source{grid, quantized, no_open_edges, nullptr, duplicates};
   NumberedTopCells cells = list_top_cells(dag, index, source, work);
-  tbb::enumerable_thread_specific<CellFilter> filters(
+  PerThread<CellFilter> filters(
       [&] { return CellFilter(dag, index, source, shading, sink.needs_normals(), work.memory); });
   filter_tasks(
       dag, index, cells, CellFilter::kBytesPerCell, work, "attributes",

@@ -1,12 +1,11 @@
 #include "voxdag/builders/attributes/filter_materials.hpp"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <numeric>
 
 #include "voxdag/builders/attributes/filter_tasks.hpp"
 #include "voxdag/builders/attributes/material_cells.hpp"
+#include "voxdag/core/parallel/per_thread.hpp"
 #include "voxdag/stored/attributes/encode_material_ids.hpp"
 
 namespace voxdag {
@@ -54,7 +53,7 @@ MaterialIds filter_materials(const Mesh& mesh, const Grid& grid, const SvdagView
   NumberedTopCells cells = list_top_cells(dag, index, source, work);
   std::vector<TopMaterials> of(cells.size());
   CountedVector<CellRun> runs(work.memory);
-  tbb::enumerable_thread_specific<MaterialFilter> filters(
+  PerThread<MaterialFilter> filters(
       [&] { return MaterialFilter(dag, index, source, of_triangles, work.memory); });
   filter_tasks(
       dag, index, cells, MaterialFilter::kBytesPerCell, work, "materials",

@@ -1,11 +1,11 @@
 #pragma once
 /// Filters the tasks of a DAG in parallel.
-#include <tbb/task_arena.h>
 
 #include "voxdag/builders/attributes/cell_task.hpp"
 #include "voxdag/builders/attributes/top_cells.hpp"
 #include "voxdag/builders/pieces/memory_gate.hpp"
 #include "voxdag/core/parallel/ordered_pipeline.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 
 namespace voxdag {
 
@@ -23,7 +23,7 @@ void filter_tasks(const SvdagView& dag, const CellIndexView& index, NumberedTopC
   std::size_t next = 0;
   std::uint64_t done = 0;
   ordered_pipeline(
-      tasks.size(), 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()), work,
+      tasks.size(), 2 * thread_count(), work,
       [&](std::size_t i) {
         NumberedTopCell& task = cells[tasks[i]];
         const std::uint64_t bytes = cells_in(dag, index, task.cell) * bytes_per_cell;

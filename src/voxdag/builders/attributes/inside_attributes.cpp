@@ -1,7 +1,5 @@
 #include "voxdag/builders/attributes/inside_attributes.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <bit>
 #include <vector>
@@ -10,6 +8,7 @@
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/parallel/ordered_pipeline.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
 #include "voxdag/stored/attributes/encode_material_ids.hpp"
 #include "voxdag/stored/attributes/numbered_cell.hpp"
@@ -128,7 +127,7 @@ DagAttributes inside_attributes(const ColoredDagView& surface, const SvdagView& 
   ValueEncoder normals(of.has_normals() ? index.cells : 0,
                        make_normal_metric(options.normal_bound_degrees), work.memory);
   MaterialEncoder materials(std::max(of.materials.materials, 1u), work.memory);
-  const std::size_t waiting = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  const std::size_t waiting = 2 * thread_count();
   const MemoryReservation values(work.memory, waiting * kMostCells * 12);
   ordered_pipeline(
       filler.cells().size(), waiting, work,

@@ -1,5 +1,3 @@
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 
@@ -34,13 +32,6 @@ double list_scratch_bytes(const SubvolumeBins& bins) {
           (sizeof(TriangleSetup) + sizeof(Context::Item) * kLists + sizeof(Context::Classified)) +
       longest * sizeof(std::uint32_t) +
       (longest > setups ? longest * (sizeof(Context::Classified) + 2 * sizeof(std::uint32_t)) : 0));
-}
-
-std::size_t thread_count(std::size_t items) {
-  const std::size_t threads = std::min<std::size_t>(
-      static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()),
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-  return std::max<std::size_t>(1, std::min(threads, items));
 }
 
 }  // namespace voxdag

@@ -2,7 +2,6 @@
 //
 // The sub-volumes are built in parallel into tables that all threads share, so nothing has to be
 // merged. The few nodes above them are then built serially.
-#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <memory>
@@ -14,6 +13,8 @@
 #include "voxdag/builders/dag/subvolume.hpp"
 #include "voxdag/builders/voxelize/duplicate_triangles.hpp"
 #include "voxdag/core/morton.hpp"
+#include "voxdag/core/parallel/per_thread.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/svdag/canonical_order.hpp"
 
@@ -117,7 +118,7 @@ HashConsedNodes voxelize_binned(const BinnedMesh& binned, int levels, Work work,
     result.stores.push_back(std::make_unique<NodeStore>(*work.memory));
   const int log2_size = levels - bins.level;
   using Context = SubvolumeContext<DagSink>;
-  tbb::enumerable_thread_specific<Context> contexts([&] {
+  PerThread<Context> contexts([&] {
     return Context(binned.mesh, levels, DagSink(result.stores, log2_sets, *work.memory), work);
   });
   std::vector<NodeId> ids(bins.cells.size(), kNoNode);

@@ -49,9 +49,6 @@ BinnedMesh bin_mesh(const BuildInput& input);
 /// list.
 double list_scratch_bytes(const SubvolumeBins& bins);
 
-/// Returns the number of threads that run a loop over `items` items.
-std::size_t thread_count(std::size_t items);
-
 /// The unique nodes of all sub-volumes and of the levels above them. `root` is kNoNode if there are
 /// no voxels.
 struct HashConsedNodes {

@@ -1,7 +1,6 @@
 // The paper's own construction (SVDAG, Section 3): builds octrees of sub-volumes of at most 1024³,
 // reduces each by sorting before it builds the next, joins them under a top tree, and reduces the
 // whole once more.
-#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <functional>
@@ -15,6 +14,8 @@
 #include "voxdag/builders/dag/subvolume.hpp"
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/morton.hpp"
+#include "voxdag/core/parallel/per_thread.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/svdag/canonical_order.hpp"
 
@@ -170,7 +171,7 @@ class SortedSubvolumes {
 /// threads.
 SortTimes add_in_parallel(SortedSubvolumes& subvolumes, const BuildInput& input) {
   const std::size_t count = subvolumes.roots.size(), threads = thread_count(count);
-  tbb::enumerable_thread_specific<SortTimes> times;
+  PerThread<SortTimes> times;
   // Sub-volumes that did not fit into memory together are built again, one at a time.
   std::vector<std::size_t> postponed;
   std::mutex postponed_mutex;

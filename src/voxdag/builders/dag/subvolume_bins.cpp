@@ -1,11 +1,10 @@
 #include "voxdag/builders/dag/subvolume_bins.hpp"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <array>
 #include <vector>
 
 #include "voxdag/builders/voxelize/cell_finder.hpp"
+#include "voxdag/core/parallel/per_thread.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
@@ -46,7 +45,7 @@ Entries sort_by_digit(std::vector<Entries>& parts, int shift, Work work) {
 SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level,
                             const CellRange& range, const IndexSet& excluded, Work work) {
   const CellFinder cells(levels, level, range);
-  tbb::enumerable_thread_specific<Entries> per_thread([&] { return Entries(work.memory); });
+  PerThread<Entries> per_thread([&] { return Entries(work.memory); });
   polled_for(mesh.triangle_count(), 1024, work, "bin", [&](std::size_t i) {
     if (!mesh.in_range(i) || excluded.contains(i)) return;
     Entries& entries = per_thread.local();

@@ -1,18 +1,17 @@
 #include "voxdag/builders/pieces/piece_stack.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <bit>
 
 #include "voxdag/core/morton.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 
 namespace voxdag {
 
 PieceStack::PieceStack(MemoryBudget* budget)
     : triangles_(budget), ids_(budget), pieces_(budget), classified_(budget) {
   if (budget == nullptr || budget->limit() == 0) return;
-  const auto threads = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+  const auto threads = thread_count();
   most_kept_bytes_ = budget->limit() / 16 / threads;
 }
 

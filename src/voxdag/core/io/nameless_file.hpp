@@ -23,4 +23,8 @@ int name_file(int descriptor, const std::filesystem::path& name) noexcept;
 /// error.
 int copy_file(int from, int to) noexcept;
 
+/// Exchanges the names of two files or folders, in one step where the system can. Returns 0, or the
+/// system's error.
+int exchange_names(const std::filesystem::path& a, const std::filesystem::path& b) noexcept;
+
 }  // namespace voxdag

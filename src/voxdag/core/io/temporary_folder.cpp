@@ -1,13 +1,10 @@
 #include "voxdag/core/io/temporary_folder.hpp"
 
-#include <fcntl.h>
-#include <stdio.h>
-
-#include <cerrno>
 #include <string>
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/nameless_file.hpp"
 #include "voxdag/core/io/temporary_file.hpp"
 
 namespace voxdag {
@@ -38,8 +35,8 @@ void TemporaryFolder::take_name() const {
   std::error_code error;
   if (fs::exists(target_, error)) {
     // After the exchange, the destructor removes the old folder.
-    if (renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0)
-      fail(target_, "cannot replace", std::error_code(errno, std::system_category()));
+    if (const int code = exchange_names(path_, target_); code != 0)
+      fail(target_, "cannot replace", std::error_code(code, std::system_category()));
     return;
   }
   fs::rename(path_, target_, error);

@@ -1,14 +1,23 @@
 #pragma once
 /// Makes results in parallel and uses them in order.
-#include <tbb/parallel_pipeline.h>
-
 #include <cstddef>
 #include <optional>
 #include <type_traits>
 #include <vector>
 
-#include "voxdag/core/parallel/loop_order.hpp"
 #include "voxdag/core/parallel/work.hpp"
+
+#ifdef VOXDAG_TBB
+#include <tbb/parallel_pipeline.h>
+
+#include "voxdag/core/parallel/loop_order.hpp"
+#else
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+
+#include "voxdag/core/parallel/parallel_for.hpp"
+#endif
 
 namespace voxdag {
 
@@ -16,9 +25,9 @@ namespace voxdag {
 /// the order of i and never twice at the same time. At most `most_waiting` results exist at a time.
 /// If `make` or `use` throws, the results that wait are destroyed and the exception leaves. Throws
 /// Cancelled.
-///
-/// This function owns the results itself: tbb::parallel_pipeline leaks its tokens if a filter
-/// throws.
+#ifdef VOXDAG_TBB
+
+// This function owns the results itself: tbb::parallel_pipeline leaks its tokens if a filter throws.
 template <class Make, class Use>
 void ordered_pipeline(std::size_t count, std::size_t most_waiting, Work work, const Make& make,
                       const Use& use) {
@@ -54,5 +63,55 @@ void ordered_pipeline(std::size_t count, std::size_t most_waiting, Work work, co
           tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order, use_one));
   work.poll();
 }
+
+#else
+
+template <class Make, class Use>
+void ordered_pipeline(std::size_t count, std::size_t most_waiting, Work work, const Make& make,
+                      const Use& use) {
+  using Result = std::invoke_result_t<const Make&, std::size_t>;
+  std::vector<std::optional<Result>> results(most_waiting);
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::size_t next = 0, used = 0;
+  bool is_using = false, stops = false;
+  // The results that wait are those of [used, next), so each has a slot of its own.
+  const auto run = [&] {
+    std::unique_lock lock(mutex);
+    for (;;) {
+      changed.wait(lock, [&] { return stops || next == count || next < used + most_waiting; });
+      if (stops || next == count || work.cancelled()) return;
+      const std::size_t i = next++;
+      lock.unlock();
+      Result result = make(i);
+      lock.lock();
+      results[i % most_waiting] = std::move(result);
+      // One thread uses the results; others add theirs meanwhile.
+      while (!is_using && !stops && used < next && results[used % most_waiting]) {
+        is_using = true;
+        lock.unlock();
+        use(*results[used % most_waiting]);
+        lock.lock();
+        results[used % most_waiting].reset();
+        is_using = false;
+        ++used;
+        changed.notify_all();
+      }
+    }
+  };
+  parallel_for(std::min(most_waiting, count), [&](std::size_t) {
+    try {
+      run();
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      stops = true;
+      changed.notify_all();
+      throw;
+    }
+  });
+  work.poll();
+}
+
+#endif
 
 }  // namespace voxdag

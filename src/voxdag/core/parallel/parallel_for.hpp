@@ -1,15 +1,21 @@
 #pragma once
 /// Parallel loops. The body is per item, so `return` ends one item.
+#include <cstddef>
+
+#ifdef VOXDAG_TBB
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <cstddef>
-
 #include "voxdag/core/parallel/loop_order.hpp"
+#else
+#include "voxdag/core/parallel/thread_pool.hpp"
+#endif
 
 namespace voxdag {
 
-/// Calls body(i) for every i in [0, count), in any order, on the threads of the current TBB arena.
+#ifdef VOXDAG_TBB
+
+/// Calls body(i) for every i in [0, count), in any order, on several threads (thread_count.hpp).
 /// `grain` is the smallest number of items of a task.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
@@ -31,5 +37,21 @@ void parallel_for(std::size_t count, const Body& body) {
     body(i);
   });
 }
+
+#else
+
+template <class Body>
+void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
+  ThreadPool::instance().run(count, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i != end; ++i) body(i);
+  });
+}
+
+template <class Body>
+void parallel_for(std::size_t count, const Body& body) {
+  parallel_for(count, 1, body);
+}
+
+#endif
 
 }  // namespace voxdag

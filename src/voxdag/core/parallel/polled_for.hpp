@@ -11,9 +11,9 @@
 
 namespace voxdag {
 
-/// Calls body(i) for every i in [0, count), in any order, on the threads of the current TBB arena;
-/// polls `work` and reports to it as `stage` after every `grain` items. Throws Cancelled, or the
-/// first exception of body.
+/// Calls body(i) for every i in [0, count), in any order, on several threads; polls `work` and
+/// reports to it as `stage` after every `grain` items. Throws Cancelled, or the first exception of
+/// body.
 template <class Body>
 void polled_for(std::size_t count, std::size_t grain, Work work, std::string_view stage,
                 const Body& body) {

@@ -4,12 +4,12 @@
 ///
 /// Rays that are near each other reach the same units, so each thread keeps the units that it
 /// decoded last. A packet decodes a unit once for all its rays.
-#include <tbb/enumerable_thread_specific.h>
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "voxdag/core/parallel/per_thread.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/cpu/packets/unit_cache.hpp"
 #include "voxdag/stored/compact/compact_svdag.hpp"
@@ -61,7 +61,7 @@ class InPlaceDag {
     std::vector<std::uint32_t> words;
     std::vector<std::uint64_t>
         units;  ///< For each unit: first bit << kLengthBits | number of bits.
-    tbb::enumerable_thread_specific<UnitCache> caches;
+    PerThread<UnitCache> caches;
   };
 
   CompactSvdagView compact_;

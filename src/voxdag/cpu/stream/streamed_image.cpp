@@ -1,9 +1,8 @@
 #include "voxdag/cpu/stream/streamed_image.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <atomic>
 
+#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/cpu/packets/packet_caster.hpp"
 #include "voxdag/cpu/stream/paged_caster.hpp"
 #include "voxdag/cpu/stream/streamed_tiles.hpp"
@@ -68,7 +67,7 @@ class CpuTiles : public StreamedTiles {
   /// Renders the tiles a few at a time.
   void render_rest(const std::vector<ViewTile>& tiles) override {
     const Vec3d eye = plan_.setup().camera.eye;
-    const auto at_once = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    const auto at_once = thread_count();
     for (std::size_t begin = 0; begin < tiles.size(); begin += at_once) {
       const auto first = tiles.begin() + static_cast<std::ptrdiff_t>(begin);
       std::vector<ViewTile> part(

@@ -1,9 +1,8 @@
 #include "voxdag/stored/compact/compact_model.hpp"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 
+#include "voxdag/core/parallel/per_thread.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/compact/train_tree.hpp"
 #include "voxdag/stored/compact/unit_symbols.hpp"
@@ -157,7 +156,7 @@ CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, Work work
   std::size_t tables = 0;
   for (const ContextTree& tree : trees) tables += tree.tables();
   const TableFinder finder(trees);
-  tbb::enumerable_thread_specific<CountSink> sinks([&] { return CountSink(trees, finder); });
+  PerThread<CountSink> sinks([&] { return CountSink(trees, finder); });
   const MemoryReservation counted(work.memory, tables * 256 * sizeof(std::uint64_t) * 3);
   // A brick has about 35 symbols.
   coded.begin(all.size(), count_bricks(nodes) * 35, work.memory);

@@ -1,8 +1,5 @@
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/task_arena.h>
-
 #include "voxdag/builders/esvo/build/block_assembler.hpp"
 #include "voxdag/builders/esvo/build/decide_cell.hpp"
 #include "voxdag/builders/esvo/build/open_edges.hpp"
@@ -12,6 +9,8 @@
 #include "voxdag/builders/pieces/load_pieces.hpp"
 #include "voxdag/builders/pieces/memory_gate.hpp"
 #include "voxdag/core/parallel/ordered_pipeline.hpp"
+#include "voxdag/core/parallel/per_thread.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 
 namespace voxdag {
 namespace {
@@ -78,7 +77,7 @@ class TaskBuilder {
   const CellAppearance appearance_;
   TopCells& cells_;
   MemoryGate gate_;
-  tbb::enumerable_thread_specific<CellScratch> scratch_;
+  PerThread<CellScratch> scratch_;
 };
 
 }  // namespace
@@ -107,7 +106,7 @@ EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& opt
   TaskBuilder builder(source, options, shading, cells, memory);
   BlockAssembler assembler(cells, options, sink, memory);
   ordered_pipeline(
-      tasks.size(), 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()), work,
+      tasks.size(), 2 * thread_count(), work,
       [&](std::size_t i) { return builder.build(tasks[i]); },
       [&](FinishedTask& finished) {
         weight_so_far += cells[finished.cell].weight;

@@ -1,7 +1,5 @@
 #include "voxdag/builders/esvo/build/top_cells.hpp"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "voxdag/builders/pieces/split_triangles.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/core/parallel/per_thread.hpp"
 
 namespace voxdag {
 namespace {
@@ -140,7 +139,7 @@ class TopCellFinder {
   MemoryBudget* const memory_;
   const std::size_t most_loaded_;
   MemoryGate gate_;
-  tbb::enumerable_thread_specific<CellScratch> scratch_;
+  PerThread<CellScratch> scratch_;
   TopCells cells_;
 };
 

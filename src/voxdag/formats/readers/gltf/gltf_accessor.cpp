@@ -1,3 +1,4 @@
+#include "voxdag/core/checked_size.hpp"
 #include "voxdag/formats/readers/gltf/gltf_accessor.hpp"
 
 #include <algorithm>
@@ -74,7 +75,7 @@ Elements find_elements(const GltfFile& file, const GltfValue& user, std::size_t 
       count - 1 > (length - start - element_bytes) / stride)
     throw user.error("accessor of " + std::to_string(count) +
                      " elements goes beyond its buffer view");
-  return {bytes.data() + start, stride};
+  return {bytes.data() + start, checked_size(stride)};
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 
+#include "voxdag/core/checked_size.hpp"
 #include "voxdag/formats/readers/face_writer.hpp"
 #include "voxdag/formats/readers/obj/obj_attributes.hpp"
 #include "voxdag/formats/readers/obj/obj_materials.hpp"
@@ -234,7 +235,7 @@ class ObjMeshChunks final : public MeshChunks {
                       std::span<Triangle> triangles) const override {
     read(chunk, [&](std::string_view text) {
       ObjFaces faces(source(), vertices, triangles, nullptr);
-      ObjCounts seen{.vertices = vertices.before};
+      ObjCounts seen{.vertices = checked_size(vertices.before)};
       file_.for_each_statement(
           text, [&](ObjStatement statement, std::string_view line, const char* position) {
             seen.add_value(statement);

@@ -2,6 +2,7 @@
 /// counts the rows, a second pass counts the triangles. Then all values are parsed into arrays of
 /// their final size.
 #include "voxdag/formats/readers/ply/ply_rows.hpp"
+#include "voxdag/core/checked_size.hpp"
 #include "voxdag/formats/readers/ply/ply_text_row.hpp"
 
 namespace voxdag {
@@ -77,7 +78,7 @@ class AsciiReader {
     std::size_t row = 0;
     for (const PlyElement& element : header_.elements) {
       if (element.properties.empty()) continue;  // Without properties, rows have no lines.
-      const Rows rows{row, row + element.count};
+      const Rows rows{row, checked_size(row + element.count)};
       if (rows.last > first_rows_.back())
         throw_fault(
             source_,

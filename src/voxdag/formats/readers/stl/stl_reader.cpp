@@ -5,8 +5,6 @@
 /// takes at most 0.27 times the size of the finished mesh.
 #include "voxdag/formats/readers/stl/stl_reader.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -17,6 +15,7 @@
 #include <vector>
 
 #include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
 #include "voxdag/formats/readers/plain_colors.hpp"
 #include "voxdag/formats/readers/stl/stl_facets.hpp"
@@ -52,7 +51,7 @@ class Welder {
                                            slots * sizeof(std::uint32_t)));
     mesh_.triangles.resize(facets);
     VertexTable table(vertices, slots, source_.options.arrays);
-    const std::size_t batch = 2 * std::max(tbb::this_task_arena::max_concurrency(), 1);
+    const std::size_t batch = 2 * thread_count();
     for (std::size_t first = 0; first < parts_.size(); first += batch)
       weld_parts(first, std::min(first + batch, parts_.size()), table);
     mesh_.vertices = table.take_vertices();

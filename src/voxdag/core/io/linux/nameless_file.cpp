@@ -56,4 +56,8 @@ int copy_file(int from, int to) noexcept {
   return 0;
 }
 
+int exchange_names(const std::filesystem::path& a, const std::filesystem::path& b) noexcept {
+  return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0 ? 0 : errno;
+}
+
 }  // namespace voxdag
