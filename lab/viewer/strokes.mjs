@@ -61,7 +61,7 @@ const stroke = async (brush, keys, color, way) => {
 await page.evaluate(() => {
   const { ui, viewer } = /** @type {any} */ (window).voxdag;
   // The home view follows the shape of the picture, and the exposure what it shows.
-  viewer.set({ lod: 0, exposure: 1, camera: viewer.camera() });
+  viewer.set({ lod: 0, exposure: 0.5, camera: viewer.camera() });
   ui.open('edit');
 });
 await page.waitForSelector('button[aria-keyshortcuts="T"]', { visible: true });
