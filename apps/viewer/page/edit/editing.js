@@ -59,23 +59,23 @@ export function makeEditing(ui, secret) {
   };
 
   const preview = makePreview(ui, usable);
-  /** Returns the place of a brush that meets no surface, if it adds. @param {number} x @param {number} y */
-  const floor = (x, y) => {
-    const ray = ui.overlay.projection?.ray(x, y);
-    return brush.verb === 'add' && viewer.info && ray ? floorHit(viewer.info, ray.origin, ray.direction) : null;
+  /** Returns the place of a brush that meets no surface: if it adds to a scene that has none, or had none in its file. @param {number} x @param {number} y @param {number} version */
+  const floor = (x, y, version) => {
+    const { info } = viewer, ray = ui.overlay.projection?.ray(x, y), isBare = info?.voxels === 0 || version === NO_NODE;
+    return brush.verb === 'add' && info && isBare && ray ? floorHit(info, ray.origin, ray.direction) : null;
   };
   const tool = ui.tool({
     hint: () => ({ remove: 'Drag to remove voxels', add: 'Drag to add voxels', paint: 'Drag to paint' })[brush.verb] + '. The right button moves the camera',
     click() {},
-    hover: (hit, x, y) => preview.at(hit ?? floor(x, y)),
+    hover: (hit, x, y) => preview.at(hit ?? floor(x, y, root)),
     drag(x, y) {
       const before = root, { overlay } = ui;
-      /** Whether the stroke is on the floor, as its first place is. @type {boolean | null} */
+      /** Whether the stroke is on the floor, as its first place is; null before. @type {boolean | null} */
       let isOnFloor = null;
       const pick = async (/** @type {number} */ px, /** @type {number} */ py) => {
-        const surface = isOnFloor ? null : await viewer.pick(px, py, before);
-        isOnFloor ??= surface === null;
-        const hit = isOnFloor ? floor(px, py) : surface;
+        const surface = isOnFloor === true ? null : await viewer.pick(px, py, before);
+        const hit = surface ?? (isOnFloor === false ? null : floor(px, py, before));
+        isOnFloor ??= hit === null ? null : surface === null;
         preview.at(hit);
         return hit;
       };

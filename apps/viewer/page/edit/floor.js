@@ -4,8 +4,8 @@ import { addScaled } from '../math.js';
 /** @typedef {import('../math.js').Vec3} Vec3 */
 
 /**
- * Returns where a ray meets the side of the grid that is below; null if it passes beside it. A brush begins there in a
- * scene without voxels, and beside the surface.
+ * Returns where a ray meets the side of the grid that is below; null if it passes beside it. A scene without
+ * voxels is begun there.
  * @param {Pick<import('../viewer_types.js').SceneInfo, 'origin' | 'voxelSize' | 'resolution' | 'levels' | 'view'>} info
  * @param {Vec3} from @param {Vec3} direction @returns {import('../viewer_types.js').Hit | null}
  */
