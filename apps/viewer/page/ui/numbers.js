@@ -29,3 +29,6 @@ export function lengthText(x, step) {
 
 /** Returns an angle in whole degrees. @param {number} x */
 export const degrees = (x) => `${Math.round(x)}°`.replace('-', '\u2212');
+
+/** Returns a time as a person would say it. @param {number} seconds */
+export const secondsText = (seconds) => (seconds < 1 ? 'less than a second' : seconds < 99 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} minutes`);

@@ -1,0 +1,16 @@
+/** What a build at another resolution will take, from one that is done. */
+
+/** @typedef {{resolution: number, voxels: number, seconds: number, bytes: number, hasColors: boolean}} Done  `bytes`: memory. */
+
+/** Memory of a page's program: 4 GiB; a part of it is lost between pieces. */
+export const MOST_BYTES = 0.8 * 2 ** 32;
+/** Bytes and seconds that one more voxel takes, without and with colours: see docs/browser.md. */
+const COST = { bare: { bytes: 0.7, seconds: 3e-8 }, colored: { bytes: 12, seconds: 8e-7 } };
+
+/** Returns what a build will take: each doubling sets four times as many voxels of a surface, eight times of a body. @param {Done} done @param {number} resolution @param {{colors: boolean, solid: boolean}} options */
+export function expected(done, resolution, { colors, solid }) {
+  const voxels = done.voxels * (resolution / done.resolution) ** 2, more = Math.max(0, voxels - done.voxels);
+  const cost = colors ? COST.colored : COST.bare;
+  // A full cell is one node: the voxels inside cost nothing.
+  return { voxels: solid ? NaN : voxels, seconds: done.seconds + more * cost.seconds, bytes: done.bytes + more * cost.bytes };
+}
