@@ -3,7 +3,7 @@ import { MOST_BYTES, expected } from '../build/estimate.js';
 import { hasProgram, plainLine, run } from '../build/program.js';
 import { button, group, slider, textField, toggle } from './controls.js';
 import { h, say } from './dom.js';
-import { bytesText, countText, secondsText } from './numbers.js';
+import { bytesText, roundText, secondsText } from './numbers.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui
@@ -78,7 +78,7 @@ export function buildPanel(ui) {
       while (fits > LEAST && expected(done, fits, options).bytes > MOST_BYTES) fits = 2 ** (Math.ceil(Math.log2(fits)) - 1);
       start.disabled = isScaled() && fits < resolution;
       say(forecast, start.disabled ? `It needs about ${bytesText(bytes)} of memory, more than a browser gives. ${fits}³ fits.`
-        : `About ${solid ? '' : `${countText(+voxels.toPrecision(2))} voxels, `}${bytesText(bytes)} of memory, ${secondsText(seconds)}.`);
+        : `About ${solid ? '' : `${roundText(voxels)} voxels, `}${bytesText(+bytes.toPrecision(2))} of memory, ${secondsText(seconds)}.`);
     },
     /** Whether there is a model. */
     hasModel: () => model !== null,
