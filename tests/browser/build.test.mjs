@@ -5,7 +5,7 @@ import path from 'node:path';
 import { it } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import zlib from 'node:zlib';
-import { assertNoComplaints, describeInBrowsers, open, still } from './browser.mjs';
+import { assertNoComplaints, describeInBrowsers, open } from './browser.mjs';
 import { build, buildColored, folder, serveFolder, voxdag } from './program.mjs';
 
 const QUICK = '#ao=0&shadows=off', SIZE = { width: 240, height: 160 };
@@ -60,7 +60,7 @@ const sceneOf = async (page) => Buffer.from(await page.evaluate(async () => {
 
 /** Presses a button of the page. @param {any} page @param {string} label */
 const press = (page, label) => page.evaluate((/** @type {string} */ label) => {
-  const found = [...document.querySelectorAll('button')].find((button) => button.textContent === label || button.getAttribute('aria-label') === label);
+  const found = [...document.querySelectorAll('.panel button, .job button')].find((button) => button.textContent === label);
   if (!found) throw new Error(`no button ${label}`);
   found.click();
 }, label);
@@ -162,10 +162,11 @@ describeInBrowsers('build', (browserName, browser) => {
 
   it('says what a build takes, builds it, and can cancel it', async () => {
     const server = await startSite(), page = await open(browser(), server.url + QUICK, { ...SIZE, ready: 'document.querySelector(".welcome")' });
-    build('sponge', 64);
-    await drop(page, { 'sponge.ply': fs.readFileSync(path.join(folder, 'sponge.ply')) });
-    const coarse = await shown(page, 'sponge.vdag');
-    assert.match(await page.evaluate(() => document.querySelector('.panel-body')?.textContent), /sponge\.ply.*About .* voxels, .* MB of memory, .*s/);
+    buildColored(64);
+    await drop(page, { 'colored.ply': fs.readFileSync(path.join(folder, 'colored.ply')) });
+    const coarse = await shown(page, 'colored.vdag');
+    assert.ok(coarse.hasColors);
+    assert.match(await page.evaluate(() => document.querySelector('.panel-body')?.textContent), /colored\.ply.*Colours.*About .* voxels, .* MB of memory, .*s/);
     const choose = (/** @type {number} */ level) => page.evaluate((level) => {
       const slider = /** @type {HTMLInputElement} */ (document.querySelector('.panel input[type=range]'));
       slider.value = String(level);
@@ -180,7 +181,6 @@ describeInBrowsers('build', (browserName, browser) => {
     await choose(8);
     await press(page, 'Build');
     await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.info.resolution === 256);
-    await still(page);
     assertNoComplaints(page);
     await page.close();
     server.close();
