@@ -4,7 +4,7 @@
 
 /** Memory of a page's program: 4 GiB; a part of it is lost between pieces. */
 export const MOST_BYTES = 0.8 * 2 ** 32;
-/** Bytes and seconds that one more voxel takes, without and with colours: see docs/browser.md. */
+/** Bytes and seconds that one more voxel takes, without and with colours: rounded up from builds of a courtyard and of a coloured surface. */
 const COST = { bare: { bytes: 0.7, seconds: 3e-8 }, colored: { bytes: 12, seconds: 8e-7 } };
 
 /** Returns what a build will take: each doubling sets four times as many voxels of a surface, eight times of a body. @param {Done} done @param {number} resolution @param {{colors: boolean, solid: boolean}} options */
