@@ -78,7 +78,7 @@ export function buildPanel(ui) {
       while (fits > LEAST && expected(done, fits, options).bytes > MOST_BYTES) fits = 2 ** (Math.ceil(Math.log2(fits)) - 1);
       start.disabled = isScaled() && fits < resolution;
       say(forecast, start.disabled ? `It needs about ${bytesText(bytes)} of memory, more than a browser gives. ${fits}³ fits.`
-        : `About ${solid ? '' : `${roundText(voxels)} voxels, `}${bytesText(+bytes.toPrecision(2)).replace(/\.0+ /, ' ')} of memory, ${secondsText(seconds)}.`);
+        : `${solid ? 'At least' : `About ${roundText(voxels)} voxels,`} ${bytesText(+bytes.toPrecision(2)).replace(/\.0+ /, ' ')} of memory, ${secondsText(seconds)}${solid ? '; the inside takes more' : ''}.`);
     },
     /** Whether there is a model. */
     hasModel: () => model !== null,
