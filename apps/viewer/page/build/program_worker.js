@@ -4,7 +4,16 @@ self.onmessage = async ({ data: { module, args, files } }) => {
   const send = (/** @type {any} */ message, /** @type {Transferable[]} */ transfer = []) => /** @type {any} */ (self).postMessage(message, transfer);
   // The page waits for this lock, so it learns when the browser ends the worker.
   const name = `voxdag-${Math.random()}`;
-  navigator.locks?.request(name, () => (send({ type: 'lock', name }), new Promise(() => undefined))).catch(() => undefined);
+  await new Promise((resolve) => {
+    const hold = () => {
+      send({ type: 'lock', name });
+      resolve(undefined);
+      return new Promise(() => undefined);
+    };
+    // Some pages from disk may have no locks.
+    if (navigator.locks) navigator.locks.request(name, hold).catch(resolve);
+    else resolve(undefined);
+  });
   const out = /** @type {string[]} */ ([]), lines = /** @type {string[]} */ ([]);
   /** @type {WebAssembly.Memory | undefined} */
   let memory;
