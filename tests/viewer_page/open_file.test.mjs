@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import vm from 'node:vm';
 import zlib from 'node:zlib';
 
-import { openFile } from '../../apps/viewer/page/ui/open_file.js';
+import { openFiles } from '../../apps/viewer/page/ui/open_file.js';
 import { DEFAULTS, NO_PLACES, mergeSettings } from '../../apps/viewer/page/settings.js';
 
 /** The part of the worker that reads files of this computer. */
@@ -48,6 +48,8 @@ test('a file of another kind and a broken page say so', async () => {
     await assert.rejects(open(page(scene)), { title: 'This page is damaged' });
   await assert.rejects((await open(SCENE)).source.read(new Uint8Array(1), SCENE.length), { title: 'This file is damaged' });
 });
+
+const openFile = (ui, file) => openFiles(ui, [{ name: file.name, data: file }]);
 
 /** An interface whose viewer notes what it is told. */
 function fakeUi() {

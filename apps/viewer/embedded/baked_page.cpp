@@ -50,6 +50,9 @@ BakedPage::BakedPage(const PageView& view)
     replace(index_, kEnd,
             std::string(kEnd) + "\n<script type=\"application/json\" id=\"settings\">" +
                 script_json(view.settings) + "</script>");
+  if (!view.has_scene)
+    replace(index_, kEnd,
+            std::string(kEnd) + "\n<script type=\"text/plain\" id=\"scene\"></script>");
   if (!view.edits)
     std::erase_if(files_, [](const PageFile& file) { return file.path.starts_with("edit/"); });
   for (PageFile& file : files_)

@@ -9,10 +9,11 @@ namespace voxdag {
 
 /// The settings, title and poster with which a page begins. The page chooses what is empty.
 struct PageView {
-  std::string settings;  ///< JSON as the page saves it: voxdag/render/film/view_settings.hpp.
-  std::string title;     ///< Of the page, until it has read its settings.
-  bool edits = false;    ///< The page has the files of edit/.
-  std::string poster;    ///< Data URL of a picture that is shown until the scene has arrived.
+  std::string settings;   ///< JSON as the page saves it: voxdag/render/film/view_settings.hpp.
+  std::string title;      ///< Of the page, until it has read its settings.
+  bool has_scene = true;  ///< Otherwise it begins with the start page, which takes files.
+  bool edits = false;     ///< The page has the files of edit/.
+  std::string poster;     ///< Data URL of a picture that is shown until the scene has arrived.
 };
 
 /// The files of the page, in which index.html has the view; without those of edit/ unless the view

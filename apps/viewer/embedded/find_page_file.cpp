@@ -12,4 +12,9 @@ const PageFile* find_page_file(std::string_view path) {
   return found == files.end() || found->path != path ? nullptr : &*found;
 }
 
+bool has_program(std::span<const PageFile> files) {
+  return std::any_of(files.begin(), files.end(),
+                     [](const PageFile& file) { return file.path == "build/voxdag.js"; });
+}
+
 }  // namespace voxdag

@@ -14,6 +14,9 @@ struct PageFile {
 /// Returns the files, sorted by path. They live as long as the program.
 std::span<const PageFile> page_files();
 
+/// Returns whether the page can build scenes: it has the program for browsers.
+bool has_program(std::span<const PageFile> files);
+
 /// Returns the file with this path, or null.
 const PageFile* find_page_file(std::string_view path);
 

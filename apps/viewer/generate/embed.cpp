@@ -2,7 +2,9 @@
 ///
 ///   embed OUT.cpp OUT_FOLDER PAGE_FOLDER CONSTANTS.js FILE...
 ///
-/// FILE... are the files of the page, as paths from PAGE_FOLDER. The build runs it.
+/// FILE... are the files of the page: paths from PAGE_FOLDER, or PATH=SOURCE for files that lie
+/// elsewhere. With build/voxdag.js, index.html says that the page has the program. The build runs
+/// it.
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -33,7 +35,8 @@ std::string content_type(const fs::path& file) {
       {".json", "application/json"},
       {".svg", "image/svg+xml"},
       {".png", "image/png"},
-      {".woff2", "font/woff2"}};
+      {".woff2", "font/woff2"},
+      {".gz", "application/gzip"}};
   for (const auto& [extension, type] : kTypes)
     if (file.extension() == extension) return std::string(type);
   throw std::runtime_error(file.string() + ": no content type is known for this extension");
@@ -88,6 +91,18 @@ std::string literal(const std::string& bytes) {
   return text + "\"";
 }
 
+/// Says in index.html that the page has the program that builds: build/program.js reads it.
+void announce_program(std::vector<Embedded>& files) {
+  constexpr std::string_view kMain = "<main id=\"container\"";
+  for (Embedded& file : files) {
+    if (file.path != "index.html") continue;
+    const std::size_t at = file.bytes.find(kMain);
+    if (at == std::string::npos)
+      throw std::runtime_error("index.html: lacks " + std::string(kMain));
+    file.bytes.insert(at + kMain.size(), " data-program");
+  }
+}
+
 std::string source_of(const std::vector<Embedded>& files) {
   std::string text =
       "// Made by apps/viewer/generate/embed.cpp. Do not edit.\n"
@@ -109,8 +124,15 @@ void embed(int argc, char** argv) {
     throw std::runtime_error("usage: embed OUT.cpp OUT_FOLDER PAGE_FOLDER CONSTANTS.js FILE...");
   const fs::path source = argv[1], copy = argv[2], page = argv[3];
   std::vector<Embedded> files = {{"constants.js", content_type("constants.js"), read(argv[4])}};
-  for (int i = 5; i < argc; ++i)
-    files.push_back({argv[i], content_type(argv[i]), read(page / argv[i])});
+  bool has_program = false;
+  for (int i = 5; i < argc; ++i) {
+    const std::string argument = argv[i], path = argument.substr(0, argument.find('='));
+    const fs::path from =
+        path == argument ? page / path : fs::path(argument.substr(path.size() + 1));
+    files.push_back({path, content_type(path), read(from)});
+    has_program |= path == "build/voxdag.js";
+  }
+  if (has_program) announce_program(files);
   std::sort(files.begin(), files.end(),
             [](const Embedded& a, const Embedded& b) { return a.path < b.path; });
   for (const Embedded& file : files) {

@@ -35,6 +35,9 @@ export class SceneArrival {
     /** @type {SceneTextures | null} */
     this.textures = null;
     this.bytesLoaded = 0;
+    /** The scene's file, if it is not on a server. @type {Blob | null} */
+    this.file = null;
+    this.url = '';
     /** @type {Vec3} The up vector that the shape of the scene suggests. */
     this.guessed = [0, 1, 0];
     /** Whether the loader has sent all that it can: it has finished or failed. */
@@ -51,9 +54,19 @@ export class SceneArrival {
    * @param {{url?: string, bytes?: ArrayBuffer, file?: Blob}} from
    */
   async open({ url, bytes, file }) {
-    if (file !== undefined) return this.loader.open({ file });
-    if (url === undefined && bytes === undefined) bytes = (await inlineScene()) ?? undefined;
-    await this.loader.open(bytes !== undefined ? { bytes } : { url: url ?? 'scene.vdag' });
+    if (bytes !== undefined) file = new Blob([bytes]);
+    if (file === undefined && url === undefined) file = (await inlineScene()) ?? undefined;
+    if (file === undefined) this.url = url ?? 'scene.vdag';
+    else this.file = file;
+    await this.loader.open(file !== undefined ? { file } : { url: this.url });
+  }
+
+  /** Returns the scene's file. Throws Error if its server does not send it. @returns {Promise<Blob>} */
+  async source() {
+    if (this.file !== null) return this.file;
+    const response = await fetch(new URL(this.url, document.baseURI));
+    if (!response.ok) throw new Error(`${this.url}: the server answers ${response.status}`);
+    return response.blob();
   }
 
   /** Levels of cells that have arrived. */
@@ -65,6 +78,7 @@ export class SceneArrival {
   #take(message) {
     switch (message.type) {
       case 'info':
+        if (message.scene) this.file = message.scene;
         this.report('begin', message.settings);
         return this.#begin(message.info, message.bytes);
       case 'progress':

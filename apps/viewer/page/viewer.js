@@ -29,8 +29,8 @@ const ANY_CAMERA = { eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 40 }
 
 /**
  * Makes a viewer in a container, and begins to load a scene: from `url`, from `bytes`, or the one
- * that the page holds itself. Failures are 'error' events { title, text, kind }.
- * @param {{container: HTMLElement, url?: string, bytes?: ArrayBuffer, settings?: PartialSettings}} options
+ * that the page holds itself. An `empty` viewer waits for open(). Failures are 'error' events { title, text, kind }.
+ * @param {{container: HTMLElement, url?: string, bytes?: ArrayBuffer, settings?: PartialSettings, empty?: boolean}} options
  * @returns {Viewer}
  */
 export function createViewer(options) {
@@ -43,7 +43,7 @@ const messageOf = (error) => (error instanceof Error ? error.message : String(er
 /** @implements {Viewer} */
 class CanvasViewer extends Events {
   /** @param {Parameters<typeof createViewer>[0]} options */
-  constructor({ container, url, bytes, settings }) {
+  constructor({ container, url, bytes, settings, empty = false }) {
     super();
     this.canvas = document.createElement('canvas');
     this.canvas.className = 'voxdag-canvas';
@@ -77,11 +77,11 @@ class CanvasViewer extends Events {
     this.canvas.addEventListener('webglcontextlost', (event) => this.#onLost(event));
     this.canvas.addEventListener('webglcontextrestored', () => this.#onRestored());
     // Later, so that the caller can add handlers first.
-    this.started = Promise.resolve().then(() => this.#start(url, bytes)).catch((error) => this.#fail('The viewer cannot start', messageOf(error)));
+    this.started = Promise.resolve().then(() => this.#start(url, bytes, empty)).catch((error) => this.#fail('The viewer cannot start', messageOf(error)));
   }
 
-  /** @param {string | undefined} url @param {ArrayBuffer | undefined} bytes */
-  async #start(url, bytes) {
+  /** @param {string | undefined} url @param {ArrayBuffer | undefined} bytes @param {boolean} empty */
+  async #start(url, bytes, empty) {
     const gl = this.canvas.getContext('webgl2', { alpha: false, antialias: false, depth: false, stencil: false, powerPreference: 'high-performance' });
     if (gl === null)
       return this.#fail('This browser has no WebGL 2', 'Turn on hardware acceleration, or use a current version of Chrome, Edge, Firefox or Safari.', 'webgl');
@@ -90,6 +90,7 @@ class CanvasViewer extends Events {
     if (this.isDestroyed) return;
     this.#prepare(gl);
     this.#resize();
+    if (empty) return;
     this.arrival = new SceneArrival(gl, () => this.#aspect(), (event, ...values) => this.#report(event, ...values));
     await this.arrival.open({ url, bytes });
   }
@@ -97,9 +98,10 @@ class CanvasViewer extends Events {
   /**
    * Shows the scene of a file of this computer in place of the present one: a .vdag file, or a page that holds one.
    * Throws Error if the file is of another kind or broken; then the present scene stays.
-   * @param {File} file @returns {Promise<void>}  Until the file's header is read.
+   * @param {File} file @param {{keepsPlaces?: boolean}} [options]  `keepsPlaces`: camera, section, measures and notes stay.
+   * @returns {Promise<void>}  Until the file's header is read.
    */
-  async open(file) {
+  async open(file, { keepsPlaces = false } = {}) {
     await this.started;
     const { gl } = this;
     if (gl === null || this.isDestroyed) throw new Error('there is no picture');
@@ -111,7 +113,7 @@ class CanvasViewer extends Events {
           reject(new Error(`${values[0].title}. ${values[0].text}`));
         } else if (event === 'begin') {
           try {
-            this.#replace(arrival, file.name, values[0]);
+            this.#replace(arrival, file.name, keepsPlaces ? {} : values[0] === null ? NO_PLACES : settingsFromJson(values[0]));
             resolve();
           } catch (error) {
             arrival.close();
@@ -125,16 +127,21 @@ class CanvasViewer extends Events {
 
   /**
    * Leaves a scene for another. Settings of its places go; those of light and picture stay, unless the new scene has settings.
-   * @param {SceneArrival} arrival @param {string} name @param {string | null} settings  JSON.
+   * @param {SceneArrival} arrival @param {string} name @param {PartialSettings} settings
    */
   #replace(arrival, name, settings) {
-    const wanted = settings === null ? NO_PLACES : settingsFromJson(settings);
     this.arrival?.close();
     this.arrival = arrival;
     this.file = name;
     this.hasFailed = false;
     this.emit('opened', name);
-    this.set(wanted, 'file');
+    this.set(settings, 'file');
+  }
+
+  /** Returns the file of the scene. @returns {Promise<Blob>} */
+  async scene() {
+    if (this.arrival === null) throw new Error('there is no scene');
+    return this.arrival.source();
   }
 
   /** Makes what a graphics card needs, for the first time or after it was lost. @param {WebGL2RenderingContext} gl */

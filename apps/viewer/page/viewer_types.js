@@ -49,7 +49,9 @@
  * @property {HTMLCanvasElement} canvas
  * @property {SceneInfo | null} info  Null until the file's header is read.
  * @property {string | null} file  The name of the file that was opened on this computer.
- * @property {(file: File) => Promise<void>} open  Shows the scene of a .vdag file or of a page; throws Error if the file has none.
+ * @property {(file: File, options?: {keepsPlaces?: boolean}) => Promise<void>} open  Shows the scene of a .vdag file or of a page; throws Error if the file has none.
+ *   `keepsPlaces`: camera, section, measures and notes stay.
+ * @property {() => Promise<Blob>} scene  The .vdag file of the scene.
  * @property {(event: string, handler: (...values: any[]) => void) => void} on
  * @property {(event: string, handler: (...values: any[]) => void) => void} off
  * @property {(settings: PartialSettings, by?: string) => void} set

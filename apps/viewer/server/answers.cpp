@@ -20,10 +20,11 @@ constexpr char kScenePath[] = "/scene.vdag";
 constexpr char kSceneType[] = "application/octet-stream";
 
 /// Allows only what the page needs: files of this server; a worker and pictures that the page makes
-/// itself (blob:); pictures in its style sheet (data:). Forbids inline scripts and styles, and
-/// frames of other sites around the page.
+/// itself (blob:); pictures in its style sheet (data:); the program that builds, in WebAssembly.
+/// Forbids inline scripts and styles, and frames of other sites around the page.
 constexpr char kContentSecurityPolicy[] =
-    "default-src 'none'; script-src 'self'; worker-src blob:; connect-src 'self'; "
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src blob:; connect-src "
+    "'self' blob: data:; "
     "style-src 'self'; img-src 'self' data: blob:; font-src 'self'; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'self'";
 
@@ -95,6 +96,7 @@ const httplib::Headers& Answers::default_headers() {
       // Other sites can neither embed the scene nor get a handle of the page's window.
       {"Cross-Origin-Resource-Policy", "same-origin"},
       {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"Cross-Origin-Embedder-Policy", "require-corp"},
       {"Referrer-Policy", "no-referrer"},
       // Browsers keep copies, but ask each time whether the copies are still right.
       {"Cache-Control", "no-cache"}};

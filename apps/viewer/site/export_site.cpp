@@ -18,6 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kSceneName[] = "scene.vdag";
+/// The page in one file without a scene: the page saves scenes in copies of it.
+constexpr char kTemplateName[] = "voxdag.html";
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what,
                        const std::error_code& error) {
@@ -26,7 +28,7 @@ constexpr char kSceneName[] = "scene.vdag";
 
 /// Throws Error if a folder has files that are not of a page.
 void check_replaceable(const fs::path& folder) {
-  std::set<fs::path> ours = {kSceneName};
+  std::set<fs::path> ours = {kSceneName, kTemplateName};
   for (const PageFile& file : page_files())
     for (fs::path path = file.path; !path.empty(); path = path.parent_path()) ours.insert(path);
   std::error_code error;
@@ -65,6 +67,12 @@ std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Work 
     if (error) fail(target, "cannot create", error);
     write_whole_file(path, file.bytes);
     bytes += file.bytes.size();
+  }
+  if (has_program(files)) {
+    const SinglePage page = make_single_page(files);
+    const std::string text = page.before + page.after;
+    write_whole_file(site.path() / kTemplateName, text);
+    bytes += text.size();
   }
   write_scene(site.path() / kSceneName, scene, work);
   site.take_name();

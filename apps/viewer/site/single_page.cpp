@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::string_view kPolicy =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src "
-    "'unsafe-inline' data:; style-src 'unsafe-inline'; img-src data: blob:; font-src data:; "
+    "'unsafe-inline' 'wasm-unsafe-eval' data:; style-src 'unsafe-inline'; img-src data: blob:; "
+    "font-src data:; "
     "worker-src blob:; connect-src data: blob:; base-uri 'none'; form-action 'none'\">\n";
 
 const PageFile& file_at(std::span<const PageFile> files, std::string_view path,
@@ -124,11 +125,11 @@ class PageBuilder {
   void add_assets() {
     const std::set<std::string> modules = reachable_modules(files_, entry_);
     for (const PageFile& file : files_)
-      if (is_text(file) && !modules.contains(std::string(file.path)))
+      if ((is_text(file) || is_packed(file)) && !modules.contains(std::string(file.path)))
         text_.append("<script type=\"text/plain\" data-path=\"")
             .append(file.path)
             .append("\">")
-            .append(file.bytes)
+            .append(is_packed(file) ? base64(file.bytes) : file.bytes)
             .append("</script>\n");
     text_ += "<script type=\"importmap\">{\"imports\": {";
     for (const std::string& path : modules) {
@@ -164,6 +165,8 @@ class PageBuilder {
   static bool is_text(const PageFile& file) {
     return file.path.ends_with(".js") || file.path.ends_with(".glsl");
   }
+
+  static bool is_packed(const PageFile& file) { return file.path.ends_with(".gz"); }
 
   /// Adds the policy behind <meta charset>; if there is none, behind <head>.
   void add_policy() {

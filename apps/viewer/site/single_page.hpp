@@ -16,6 +16,7 @@ struct SinglePage {
 ///   modules      as data: URLs in an import map, which names them "voxdag/PATH"
 ///   texts that no module imports (shaders, the worker)
 ///                as elements <script type="text/plain" data-path="PATH">
+///   gzip files   likewise, as base64
 ///   style sheets as elements <style>, and pictures as data: URLs
 ///   the scene    as the element <script type="text/plain" id="scene">
 /// It makes no connection, and its policy forbids all. Throws Error for a page that cannot become

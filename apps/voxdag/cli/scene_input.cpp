@@ -48,11 +48,11 @@ std::string builder_of(const std::string& file) {
 }  // namespace
 
 void add_scene_input(const Command& command, SceneInput& input, Session& session,
-                     const std::string& help) {
-  command
-      .text("file", session.subject, "FILE",
-            help + ", or a mesh, points or voxels that `voxdag build` or `voxdag import` reads")
-      .required();
+                     const std::string& help, bool is_required) {
+  const Option file = command.text(
+      "file", session.subject, "FILE",
+      help + ", or a mesh, points or voxels that `voxdag build` or `voxdag import` reads");
+  if (is_required) file.required();
   const auto is_built = [&session] { return !builder_of(session.subject).empty(); };
   constexpr const char* kIsDag = "on a .vdag or .esvo file";
   command

@@ -16,9 +16,9 @@ struct SceneInput {
 };
 
 /// Adds the positional FILE, which sets session.subject, -r and --keep. `help` says which .vdag and
-/// .esvo files the command takes.
+/// .esvo files the command takes. Without FILE, session.subject is empty.
 void add_scene_input(const Command& command, SceneInput& input, Session& session,
-                     const std::string& help);
+                     const std::string& help, bool is_required = true);
 
 /// Calls work() with a DAG or ESVO as session.subject. If the subject is another kind of file, it
 /// first builds or imports a DAG of it, and says so in one line on stderr.

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
@@ -10,6 +11,7 @@
 #include "view/serve_scene.hpp"
 #include "view/shown_scene.hpp"
 #include "viewer/edit/save_edited.hpp"
+#include "viewer/site/single_page.hpp"
 #include "voxdag/file/vdag_container.hpp"
 
 namespace voxdag::cli {
@@ -24,10 +26,39 @@ struct ViewArguments {
   std::string output;  ///< The file that saving suggests; empty: beside the input.
 };
 
+/// The scene of a page that begins without one.
+class NoScene : public SceneBytes {
+ public:
+  std::uint64_t size() const override { return 0; }
+  std::string tag() const override { return "none"; }
+  bool is_unchanged() const override { return true; }
+  bool read(std::uint64_t, std::span<std::byte>) const override { return false; }
+};
+
+/// Serves the page, and the template in which it saves scenes as pages.
+void serve_page(const SceneBytes& scene, const PageView& shown, const ViewArguments& arguments,
+                Session& session) {
+  const BakedPage page(shown);
+  std::vector<PageFile> files(page.files().begin(), page.files().end());
+  std::string single;
+  if (has_program(files)) {
+    const auto [before, after] = make_single_page(BakedPage({}).files());
+    single = before + after;
+    files.push_back({"voxdag.html", "text/html; charset=utf-8", single});
+  }
+  serve_scene(scene, files, arguments.serve, session);
+}
+
 void view(const ViewArguments& arguments, Session& session) {
-  const BakedPage page(read_page_view(arguments.page_view));
   const ShownScene scene = ShownScene::open(session.subject, arguments.scene, session);
-  serve_scene(scene.bytes(), page.files(), arguments.serve, session);
+  serve_page(scene.bytes(), read_page_view(arguments.page_view), arguments, session);
+}
+
+/// Shows the start page.
+void view_nothing(const ViewArguments& arguments, Session& session) {
+  PageView shown = read_page_view(arguments.page_view);
+  shown.has_scene = false;
+  serve_page(NoScene(), shown, arguments, session);
 }
 
 /// Returns the file that saving suggests for an input: "FOLDER/NAME-edited.vdag".
@@ -68,7 +99,7 @@ void add_view_command(const Command& program, Session& session) {
       "  voxdag view --edit scene.vdag\n\n"
       "Starts a server, prints the address of the page as one line on stdout, and opens "
       "it with xdg-open if there is a display (DISPLAY or WAYLAND_DISPLAY). Ctrl-C ends "
-      "the server at once.\n\n"
+      "the server at once. Without FILE, the page begins with a place to drop one.\n\n"
       "A plain file of any size is served within a second: files of up to 32 MiB are "
       "checked completely, larger ones in their header, chunk table and metadata. A "
       "compact file is decoded first. An ESVO is refused.\n\n"
@@ -76,7 +107,7 @@ void add_view_command(const Command& program, Session& session) {
       "until the page saves them to a file. The address then ends in a secret: who knows it may "
       "edit, so pass it to nobody. One window edits at a time.");
   arguments->input.with_colors = true;
-  add_scene_input(command, arguments->input, session, "The .vdag file, in either form");
+  add_scene_input(command, arguments->input, session, "The .vdag file, in either form", false);
   command.number("--port", arguments->serve.port, NumberRange::whole(0, 65535), "N",
                  "Port of the server; 0: any free one");
   command.text("--listen", arguments->serve.address, "ADDRESS",
@@ -101,6 +132,10 @@ void add_view_command(const Command& program, Session& session) {
     note_page_view_files(arguments->page_view, session);
     session.work = [arguments, &session] {
       require_page_server();
+      if (session.subject.empty()) {
+        if (arguments->edits) throw UsageError("--edit", "needs a FILE");
+        return view_nothing(*arguments, session);
+      }
       const std::filesystem::path input = session.subject, output = arguments->output;
       work_on_scene(arguments->input, session, [&] {
         if (arguments->edits)

@@ -1,22 +1,38 @@
-/** The scene that a page holds itself: base64 of a gzip of the file. */
+/** Bytes that a page holds itself, as base64 of a gzip: its scene, and the program that builds. */
+import { root } from './text_assets.js';
 
-/** @returns {Promise<ArrayBuffer | null>} the bytes of the file, or null if the page holds none */
+/** The element of the scene. */
+const sceneElement = () => document.querySelector('script[type="text/plain"]#scene');
+
+/** Returns whether the page says that it has no scene: it begins with the start page. */
+export const hasNoScene = () => sceneElement()?.textContent?.trim() === '';
+
+/** @returns {Promise<Blob | null>} the file, or null if the page holds none */
 export async function inlineScene() {
-  const element = document.querySelector('script[type="text/plain"]#scene');
+  const element = sceneElement();
   if (element === null) return null;
-  const text = (element.textContent ?? '').trim();
-  const response = await fetch(`data:application/octet-stream;base64,${text}`).catch(() => null);
-  const packed = response === null ? decodeBase64(text) : response.body;
-  if (packed === null) throw new Error('the page holds no scene');
-  const stream = packed instanceof Uint8Array ? new Blob([/** @type {BlobPart} */ (packed)]).stream() : packed;
+  const scene = await unpacked(await packedText(element.textContent ?? '')).blob();
   element.remove();
-  return new Response(stream.pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+  return scene;
 }
 
-/** @param {string} text @returns {Uint8Array} */
-function decodeBase64(text) {
-  const binary = atob(text);
-  const bytes = new Uint8Array(binary.length);
-  for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
-  return bytes;
+/** Returns a file of the page that is a gzip, unpacked. @param {string} path @returns {Promise<ArrayBuffer>} */
+export async function packedFile(path) {
+  const element = document.querySelector(`script[type="text/plain"][data-path="${path}"]`);
+  if (element !== null) return unpacked(await packedText(element.textContent ?? '')).arrayBuffer();
+  const response = await fetch(new URL(path, root()));
+  if (!response.ok) throw new Error(`${path}: the server answers ${response.status}`);
+  const file = await response.blob(), start = new Uint8Array(await file.slice(0, 2).arrayBuffer());
+  // Some servers unpack it for the browser.
+  return start[0] === 0x1f && start[1] === 0x8b ? unpacked(file.stream()).arrayBuffer() : file.arrayBuffer();
+}
+
+/** @param {ReadableStream} stream */
+const unpacked = (stream) => new Response(stream.pipeThrough(new DecompressionStream('gzip')));
+
+/** Decodes base64. @param {string} text @returns {Promise<ReadableStream>} */
+async function packedText(text) {
+  text = text.trim();
+  const response = await fetch(`data:application/octet-stream;base64,${text}`).catch(() => null);
+  return response?.body ?? new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]).stream();
 }

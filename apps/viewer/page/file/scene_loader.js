@@ -23,8 +23,8 @@ const PARTS = ['source', 'blob_source', 'container', 'levels', 'attributes', 'wi
 /** @typedef {{index: {finest: number, cells: number, width: number[], words: Uint32Array}, colors: ValuePages | null, normals: ValuePages | null,
  *   materials: {materials: number, begins: Uint32Array, words: Uint32Array} | null}} Attributes */
 /**
- * The messages of the worker.
- * @typedef {{type: 'info', info: FileInfo, settings: string | null, bytes: number}
+ * The messages of the worker; `scene` is the file that was in a page.
+ * @typedef {{type: 'info', info: FileInfo, settings: string | null, scene: Blob | null, bytes: number}
  *   | {type: 'progress', bytes: number}
  *   | {type: 'level', level: number, shown: number, words: Uint32Array, codes: Uint8Array | null, mostInstances: number}
  *   | {type: 'leaves', shown: number, halves: Uint32Array, codes: Uint8Array | null, mostInstances: number}
@@ -43,7 +43,7 @@ export class SceneLoader {
     this.closed = false;
   }
 
-  /** Opens a file: at an address, its bytes, or on this computer. @param {{url?: string, bytes?: ArrayBuffer, file?: Blob}} from */
+  /** Opens a file: at an address, or on this computer. @param {{url?: string, file?: Blob}} from */
   async open(from) {
     const texts = await Promise.all(PARTS.map((name) => loadText(`file/worker/${name}.js`)));
     if (this.closed) return;
@@ -54,7 +54,6 @@ export class SceneLoader {
     this.worker.onmessage = (event) => this.onMessage(event.data);
     this.worker.onerror = (event) => this.onMessage({ type: 'error', title: 'The scene cannot be loaded', text: event.message || 'Its loader failed.' });
     if (from.file !== undefined) this.worker.postMessage({ type: 'open', file: from.file });
-    else if (from.bytes !== undefined) this.worker.postMessage({ type: 'open', bytes: from.bytes }, [from.bytes]);
     else this.worker.postMessage({ type: 'open', url: new URL(from.url ?? '', document.baseURI).href });
   }
 

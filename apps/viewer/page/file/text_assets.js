@@ -1,7 +1,7 @@
 /** Text files of the page: shaders, and the parts of the worker's script. */
 
 /** Returns the page's folder. A page in a single file has none: new URL() throws there. */
-const root = () => new URL('../', import.meta.url);
+export const root = () => new URL('../', import.meta.url);
 
 /**
  * Returns the text of a file of the page. A page in a single file holds it in

@@ -2,10 +2,11 @@
 import { DEFAULTS } from '../settings.js';
 import { settingsToHash } from '../settings_link.js';
 import { isTyping, movingKey } from '../hands/keys.js';
+import { buildPanel } from './build_panel.js';
 import { comparePanel } from './compare_panel.js';
 import { button, segments } from './controls.js';
 import { copy, h } from './dom.js';
-import { acceptFiles, openFile } from './open_file.js';
+import { acceptFiles, openFiles } from './open_file.js';
 import { filmPanel } from './film_panel.js';
 import { helpPanel } from './help_panel.js';
 import { icon } from './icons.js';
@@ -58,6 +59,8 @@ import { SIDES, viewPanel } from './view_panel.js';
  * @property {ReturnType<typeof makeJobs>} job  Runs long work, with its progress and a button that cancels it.
  * @property {(text: string) => void} announce  For screen readers only.
  * @property {(name: string) => void} open
+ * @property {(main: import('../build/input_kinds.js').NamedFile, kind: import('../build/input_kinds.js').Kind,
+ *   files: import('../build/input_kinds.js').NamedFile[], note: string) => Promise<void>} build  Builds a scene of a model, which may use other files; then shows a note.
  * @property {() => Viewer | null} second  The viewer of the second scene, if there is one.
  * @property {() => void} refresh
  * @property {() => void} reset
@@ -71,7 +74,7 @@ import { SIDES, viewPanel } from './view_panel.js';
 /** @type {[string, string, string?][]} */
 const ALL_PANELS = [
   ['edit', 'Edit', 'T'],
-  ['view', 'View'], ['light', 'Light'], ['section', 'Section', 'B'], ['materials', 'Materials'], ['measure', 'Measure', 'M'], ['notes', 'Notes', 'N'],
+  ['build', 'Build'], ['view', 'View'], ['light', 'Light'], ['section', 'Section', 'B'], ['materials', 'Materials'], ['measure', 'Measure', 'M'], ['notes', 'Notes', 'N'],
   ['film', 'Camera path', 'K'], ['compare', 'Compare'], ['share', 'Save and share'], ['statistics', 'Statistics', 'I'], ['help', 'Help', 'H'],
 ];
 
@@ -114,6 +117,7 @@ export function createInterface(viewer, hands, container, base = DEFAULTS, editi
     job: makeJobs(container, (text, isError) => status.toast(text, isError)),
     announce: (text) => status.announce(text),
     open: (name) => { if (opened !== name) toggle(name); },
+    build: (...model) => build.take(...model),
     second: () => compare.second(),
     refresh: () => refresh(),
     reset() {
@@ -143,10 +147,10 @@ export function createInterface(viewer, hands, container, base = DEFAULTS, editi
   };
 
   const edit = editing?.(ui);
-  const section = sectionPanel(ui), measure = measurePanel(ui), notes = notesPanel(ui), film = filmPanel(ui), share = sharePanel(ui), compare = comparePanel(ui);
+  const build = buildPanel(ui), section = sectionPanel(ui), measure = measurePanel(ui), notes = notesPanel(ui), film = filmPanel(ui), share = sharePanel(ui), compare = comparePanel(ui);
   /** @type {{[name: string]: Panel}} */
   const panels = {
-    view: viewPanel(ui), light: lightPanel(ui), section, measure, notes, film, compare, materials: materialsPanel(ui), share, statistics: statisticsPanel(ui), help: helpPanel(edit && [edit.help]),
+    build, view: viewPanel(ui), light: lightPanel(ui), section, measure, notes, film, compare, materials: materialsPanel(ui), share, statistics: statisticsPanel(ui), help: helpPanel(edit && [edit.help]),
     ...(edit && { edit: edit.panel }),
   };
   const readout = new Readout(ui, container);
@@ -198,6 +202,7 @@ export function createInterface(viewer, hands, container, base = DEFAULTS, editi
   };
   function refresh() {
     const settings = viewer.get();
+    showOpeners();
     modes.refresh(settings);
     if (opened) panels[opened].refresh(settings);
   }
@@ -257,7 +262,7 @@ export function createInterface(viewer, hands, container, base = DEFAULTS, editi
   };
   window.addEventListener('keydown', onKey);
 
-  acceptFiles(container, (file) => openFile(ui, file));
+  acceptFiles(container, (files) => openFiles(ui, files), (error) => ui.toast(error.message, true));
 
   // Events of the viewer.
   viewer.on('settings', (settings, by) => {
@@ -265,11 +270,12 @@ export function createInterface(viewer, hands, container, base = DEFAULTS, editi
     if (by !== 'hands' && by !== 'film') refresh();
     else if (opened && panels[opened].followsCamera) panels[opened].refresh(settings);
   });
-  const showOpeners = () => openers.get('materials')?.toggleAttribute('hidden', !viewer.info?.materials);
-  showOpeners();
+  const showOpeners = () => {
+    openers.get('materials')?.toggleAttribute('hidden', !viewer.info?.materials);
+    openers.get('build')?.toggleAttribute('hidden', !build.hasModel());
+  };
   viewer.on('look', () => refresh());
   viewer.on('info', () => {
-    showOpeners();
     overlay.redraw();
     refresh();
   });

@@ -29,3 +29,9 @@ export function lengthText(x, step) {
 
 /** Returns an angle in whole degrees. @param {number} x */
 export const degrees = (x) => `${Math.round(x)}°`.replace('-', '\u2212');
+
+/** Returns a count with two digits. @param {number} count */
+export const roundText = (count) => (count < 1e6 ? countText(+count.toPrecision(2)) : count < 1e9 ? `${+(count / 1e6).toPrecision(2)} million` : `${+(count / 1e9).toPrecision(2)} billion`);
+
+/** Returns a time as a person would say it. @param {number} seconds */
+export const secondsText = (seconds) => (seconds < 1 ? 'less than a second' : seconds < 99 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} minutes`);

@@ -1,26 +1,44 @@
-/** Opens files that a person chooses or drops on the page: scenes, pages with scenes, settings, camera paths. */
+/** Opens files that a person chooses, drops or pastes: scenes, pages with scenes, settings, camera paths, and models to build. */
+import { chosenFiles, filesOf, unpacked } from '../build/gather_files.js';
+import { kindOf, mainFile } from '../build/input_kinds.js';
 import { SettingsError, mergeSettings, settingsFromJson } from '../settings.js';
+import { button } from './controls.js';
+import { h } from './dom.js';
 
 /** @typedef {import('./interface.js').Ui} Ui */
+/** @typedef {import('../build/input_kinds.js').NamedFile} NamedFile */
 
 /** A file of settings is at most this long, in bytes. */
 const LONGEST_SETTINGS = 16 << 20;
 
-/** Opens a file, or shows one line that says why not. @param {Ui} ui @param {File} file */
-export async function openFile(ui, file) {
-  const { viewer } = ui;
+/** Opens one file, a model with its files, or a ZIP of them; or shows one line that says why not. @param {Ui} ui @param {NamedFile[]} given */
+export async function openFiles(ui, given) {
+  if (given.length === 0) return;
+  const label = given.length === 1 ? given[0].name : given[0].name.split('/')[0];
   try {
-    const start = await file.slice(0, 64).text();
-    if (/^\uFEFF?\s*[[{]/.test(start) || /\.json$/i.test(file.name)) return await openSettings(ui, file);
-    await viewer.open(file);
-    ui.toast(`Opened ${file.name}`);
+    const files = await unpacked(given), found = mainFile(files), [first] = files;
+    if (found === null) {
+      const scene = files.find(({ name }) => /\.(vdag|html|json)$/i.test(name)) ?? (files.length === 1 ? first : null);
+      if (scene === null) throw new Error('no file that the page opens is in it');
+      return await openOne(ui, scene);
+    }
+    const { main, others } = found, kind = await kindOf(main);
+    if (kind !== null) await ui.build(main, kind, files, others > 0 ? `The largest of ${others + 1}: ${main.name}` : '');
   } catch (error) {
-    ui.toast(`${file.name}: ${error instanceof Error ? error.message : error}`, true);
+    ui.toast(`${label}: ${error instanceof Error ? error.message : error}`, true);
   }
 }
 
-/** Loads settings or a camera path. @param {Ui} ui @param {File} file */
-async function openSettings(ui, file) {
+/** Opens a file that needs no building. @param {Ui} ui @param {NamedFile} file */
+async function openOne(ui, { name, data }) {
+  const start = await data.slice(0, 64).text();
+  if (/^\uFEFF?\s*[[{]/.test(start) || /\.json$/i.test(name)) return openSettings(ui, name, data);
+  await ui.viewer.open(new File([data], name));
+  ui.toast(`Opened ${name}`);
+}
+
+/** Loads settings or a camera path. @param {Ui} ui @param {string} name @param {Blob} file */
+async function openSettings(ui, name, file) {
   const { viewer } = ui;
   if (file.size > LONGEST_SETTINGS) throw new SettingsError('longer than 16 MiB');
   const text = await file.text();
@@ -37,11 +55,12 @@ async function openSettings(ui, file) {
     viewer.set(settingsFromJson(text, ignored), 'file');
     ui.toast('Settings loaded');
   }
-  if (ignored.length) ui.toast(`${file.name}: loaded without the unknown keys ${ignored.join(', ')}`, true);
+  if (ignored.length) ui.toast(`${name}: loaded without the unknown keys ${ignored.join(', ')}`, true);
 }
 
-/** Passes on the first of the files that are dropped on an element. @param {HTMLElement} element @param {(file: File) => void} take */
-export function acceptFiles(element, take) {
+/** Passes on the files that are dropped on an element, or pasted. @param {HTMLElement} element @param {(files: NamedFile[]) => void} take @param {(error: Error) => void} fail */
+export function acceptFiles(element, take, fail) {
+  const pass = (/** @type {DataTransfer} */ transfer) => filesOf(transfer).then(take, fail);
   element.addEventListener('dragover', (event) => {
     if (![...(event.dataTransfer?.items ?? [])].some((item) => item.kind === 'file')) return;
     event.preventDefault();
@@ -53,7 +72,23 @@ export function acceptFiles(element, take) {
   element.addEventListener('drop', (event) => {
     event.preventDefault();
     element.classList.remove('dropping');
-    const file = event.dataTransfer?.files[0];
-    if (file) take(file);
+    if (event.dataTransfer) pass(event.dataTransfer);
   });
+  window.addEventListener('paste', (event) => {
+    if (event.clipboardData?.files.length) pass(event.clipboardData);
+  });
+}
+
+/**
+ * Makes a button that lets a person choose files, or a folder.
+ * @param {Ui} ui @param {string} label @param {{folder?: boolean, primary?: boolean}} [options]
+ */
+export function chooseButton(ui, label, { folder = false, primary } = {}) {
+  const chooser = h('input', { type: 'file', multiple: !folder, webkitdirectory: folder, class: 'offscreen', tabindex: -1, 'aria-label': label, on: {
+    change() {
+      openFiles(ui, chosenFiles(/** @type {FileList} */ (chooser.files)));
+      chooser.value = '';
+    },
+  } });
+  return h('span', {}, button(label, () => chooser.click(), { primary }), chooser);
 }

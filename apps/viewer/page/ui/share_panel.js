@@ -1,9 +1,11 @@
 /** The panel "Save and share": the link, settings as a file, and pictures. */
+import { hasProgram } from '../build/program.js';
 import { settingsToJson } from '../settings.js';
 import { button, choice, group, textField } from './controls.js';
 import { copy, download, h } from './dom.js';
 import { embedCode, whyNotShared, withoutSecret } from './link_reach.js';
-import { openFile } from './open_file.js';
+import { chooseButton } from './open_file.js';
+import { saveScene } from './save_scene.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui
@@ -54,14 +56,6 @@ export function sharePanel(ui) {
   const licence = textField({
     label: 'Licence', most: 500, hint: 'Shown below the title', get: (s) => s.licence, set: (value) => viewer.set({ licence: value }, 'ui'),
   });
-  const chosen = () => {
-    if (chooser.files?.[0]) openFile(ui, chooser.files[0]);
-    chooser.value = '';
-  };
-  const chooser = h('input', {
-    type: 'file', accept: '.vdag,.html,.json', class: 'offscreen', tabindex: -1, 'aria-label': 'File to open',
-    on: { change: chosen },
-  });
   const picture = button('Save picture', screenshot, { icon: 'camera', primary: true, title: 'Key P', keys: 'P' });
   return {
     element: h('div', {},
@@ -71,8 +65,9 @@ export function sharePanel(ui) {
         })), h('p', { class: 'hint' },
         'The address of this page always holds the view, the light, the section, measures and notes.'), title.element, licence.element),
       group('Picture', sizes.element, qualities.element, picture),
-      group('Files', h('div', { class: 'buttons' }, button('Open…', () => chooser.click()), button('Save settings', save)), chooser,
-        h('p', { class: 'hint' }, 'Opens a scene (.vdag), a page with a scene (.html), settings or a camera path (.json); or drop the file on the picture. It stays on this computer.'),
+      saveScene(ui),
+      group('Files', h('div', { class: 'buttons' }, chooseButton(ui, 'Open…'), button('Save settings', save)),
+        h('p', { class: 'hint' }, 'Opens a scene (.vdag), a page with a scene (.html), settings or a camera path (.json)' + (hasProgram() ? ', or a model to build' : '') + '; or drop the file on the picture. It stays on this computer.'),
         h('p', { class: 'hint' }, 'With saved settings you can make a page that shows this view first, and a still in full quality:'),
         ui.command('voxdag export scene.vdag --view scene.settings.json --poster -o scene.html'),
         ui.command('voxdag render scene.vdag --view scene.settings.json -o still.png'))),

@@ -30,7 +30,7 @@ function textOfElement(html, id) {
   return at < 0 ? null : html.slice(at + begin.length, html.indexOf('<', at));
 }
 
-/** Returns the scene that a page holds: base64 of a gzip. @param {string} html @returns {Promise<ArrayBuffer>} */
+/** Returns the scene that a page holds: base64 of a gzip. @param {string} html @returns {Promise<Blob>} */
 async function sceneOfPage(html) {
   const text = textOfElement(html, 'scene')?.trim();
   if (text === undefined)
@@ -42,7 +42,7 @@ async function sceneOfPage(html) {
     // A Response would do, but Firefox reports its broken stream on the console.
     const reader = new Blob(parts).stream().pipeThrough(new DecompressionStream('gzip')).getReader(), unpacked = [];
     for (let read = await reader.read(); !read.done; read = await reader.read()) unpacked.push(read.value);
-    return await new Blob(unpacked).arrayBuffer();
+    return new Blob(unpacked);
   } catch {
     throw new SceneError('This page is damaged', 'Its scene cannot be decompressed: the page was cut off or changed.');
   }
@@ -50,13 +50,13 @@ async function sceneOfPage(html) {
 
 /**
  * Returns the scene of a file, and the settings that a page was made with, as JSON.
- * @param {Blob} file @returns {Promise<{source: MemorySource | BlobSource, settings: string | null}>}
+ * @param {Blob} file @returns {Promise<{source: BlobSource, settings: string | null}>}
  */
 async function openBlob(file) {
   const start = new Uint8Array(await file.slice(0, 64).arrayBuffer());
   if (/^\s*<(!doctype\s+html|html)/i.test(new TextDecoder('latin1').decode(start))) {
     const html = await file.text();
-    return { source: new MemorySource(await sceneOfPage(html)), settings: textOfElement(html, 'settings') };
+    return { source: new BlobSource(await sceneOfPage(html)), settings: textOfElement(html, 'settings') };
   }
   if (!FILE.magic.every((byte, i) => start[i] === byte))
     throw new SceneError('This file is of another kind', 'The page opens .vdag files, pages with a scene (.html), settings and camera paths (.json).');

@@ -15,7 +15,7 @@ function readSize(view, at, what) {
 
 /**
  * Reads the container's header and chunk table.
- * @param {MemorySource | BlobSource | ServerSource} source @param {Uint8Array} head the first bytes
+ * @param {BlobSource | ServerSource} source @param {Uint8Array} head the first bytes
  * @returns {Promise<ChunkTable>}
  */
 async function readChunkTable(source, head) {
@@ -69,7 +69,7 @@ function member(object, key, type) {
 
 /**
  * Reads the metadata and the places of the levels.
- * @param {MemorySource | BlobSource | ServerSource} source @param {Uint8Array} head @param {ChunkTable} chunks
+ * @param {BlobSource | ServerSource} source @param {Uint8Array} head @param {ChunkTable} chunks
  */
 async function readSceneInfo(source, head, chunks) {
   const meta = chunks.get('META'), levl = chunks.get('LEVL'), nodes = chunks.get('NODE'), leaves = chunks.get('LEAF');
@@ -134,7 +134,7 @@ function homeIn(home) {
   return { eye: home.eye, target: home.target, up: home.up, fov: home.fov, ...(isPoint(home.sun) ? { sun: home.sun } : {}) };
 }
 
-/** Returns the bytes of a chunk, from `head` if they are in it. @param {MemorySource | BlobSource | ServerSource} source @param {Uint8Array} head @param {Chunk} chunk */
+/** Returns the bytes of a chunk, from `head` if they are in it. @param {BlobSource | ServerSource} source @param {Uint8Array} head @param {Chunk} chunk */
 async function readPart(source, head, chunk) {
   if (chunk.offset + chunk.length <= head.length) return head.slice(chunk.offset, chunk.offset + chunk.length);
   const bytes = new Uint8Array(chunk.length);

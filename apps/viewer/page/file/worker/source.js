@@ -1,4 +1,4 @@
-/** Sources of a file's bytes: memory or a server. Part of the worker's script: see scene_loader.js. */
+/** Bytes of a file on a server. Part of the worker's script: see scene_loader.js. */
 
 /** An error that the page shows: a short title, and what happened and what to do. */
 class SceneError extends Error {
@@ -12,21 +12,6 @@ class SceneError extends Error {
 /** @param {string} text @returns {SceneError} */
 function brokenFile(text) {
   return new SceneError('This file is damaged', text);
-}
-
-/** Bytes that are all in memory. */
-class MemorySource {
-  /** @param {ArrayBuffer} bytes */
-  constructor(bytes) {
-    this.bytes = new Uint8Array(bytes);
-    this.size = bytes.byteLength;
-  }
-  /** Fills `target` from `offset`. @param {Uint8Array} target @param {number} offset */
-  async read(target, offset) {
-    if (offset + target.length > this.size)
-      throw brokenFile(`The file ends at byte ${this.size}, but its contents go on to byte ${offset + target.length}.`);
-    target.set(this.bytes.subarray(offset, offset + target.length));
-  }
 }
 
 /**

@@ -6,7 +6,7 @@
 /** The first request holds the head of the file and, of all but the largest files, the first levels. */
 const HEAD_BYTES = 1 << 14, SLICE_BYTES = 1 << 22;
 
-/** @type {MemorySource | BlobSource | ServerSource} */
+/** @type {BlobSource | ServerSource} */
 let source;
 /** @type {ChunkTable} */
 let chunks;
@@ -122,9 +122,11 @@ async function loadAttributes(wanted) {
 /** @param {any} request */
 async function handle(request) {
   if (request.type === 'open') {
-    let settings = null;
+    let settings = null, scene = null;
     if (request.url === undefined) {
-      ({ source, settings } = request.file ? await openBlob(request.file) : { source: new MemorySource(request.bytes), settings });
+      const opened = await openBlob(request.file);
+      ({ source, settings } = opened);
+      if (opened.source.blob !== request.file) scene = opened.source.blob;
       head = new Uint8Array(Math.min(HEAD_BYTES, source.size));
       await source.read(head, 0);
     } else {
@@ -134,7 +136,7 @@ async function handle(request) {
     bytesLoaded = head.length;
     chunks = await readChunkTable(source, head);
     info = await readSceneInfo(source, head, chunks);
-    send({ type: 'info', info, settings, bytes: bytesLoaded });
+    send({ type: 'info', info, settings, scene, bytes: bytesLoaded });
   } else if (request.type === 'load') {
     await loadLevels(request.shown);
     await loadAttributes(request);

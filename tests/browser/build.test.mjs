@@ -1,0 +1,242 @@
+/** Models that the page builds scenes of, and scenes that it saves. VOXDAG_PAGE must have the program for browsers. */
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import path from 'node:path';
+import { it } from 'node:test';
+import { pathToFileURL } from 'node:url';
+import zlib from 'node:zlib';
+import { assertNoComplaints, describeInBrowsers, open } from './browser.mjs';
+import { build, buildColored, folder, serveFolder, voxdag } from './program.mjs';
+
+const QUICK = '#ao=0&shadows=off', SIZE = { width: 240, height: 160 };
+const MODULE = path.join(process.env.VOXDAG_PAGE ?? '', 'build');
+
+if (!fs.existsSync(path.join(MODULE, 'voxdag.js'))) {
+  console.log('Skipped: the page has no program for browsers; configure with -DVOXDAG_BROWSER_MODULE');
+  process.exit(0);
+}
+
+/** Makes a site without a scene. @returns {Promise<{url: string, close: () => void}>} */
+async function startSite() {
+  const site = path.join(folder, 'site');
+  if (!fs.existsSync(site)) {
+    fs.cpSync(process.env.VOXDAG_PAGE ?? '', site, { recursive: true });
+    const index = path.join(site, 'index.html');
+    fs.writeFileSync(index, fs.readFileSync(index, 'utf8').replace('</main>', '</main>\n<script type="text/plain" id="scene"></script>'));
+  }
+  return serveFolder(site);
+}
+
+/** Drops files on the page. @param {any} page @param {{[name: string]: string | Buffer}} files */
+const drop = (page, files) => page.evaluate((/** @type {[string, string][]} */ files) => {
+  const data = new DataTransfer();
+  for (const [name, base64] of files) data.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], name));
+  document.getElementById('container')?.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+}, Object.entries(files).map(([name, contents]) => [name, Buffer.from(contents).toString('base64')]));
+
+/** Waits for a message that has a text. @param {any} page @param {string} text */
+const message = (page, text) => page.waitForFunction((/** @type {string} */ text) => document.querySelector('.toast:not(.tool-hint)')?.textContent?.includes(text), {}, text);
+
+/** Waits for a scene with this name; returns its numbers. @param {any} page @param {string} name */
+async function shown(page, name) {
+  await page.waitForFunction((/** @type {string} */ name) => {
+    const failed = document.querySelector('.toast.error:not([hidden])')?.textContent;
+    if (failed) throw new Error(failed);
+    return /** @type {any} */ (window).voxdag.viewer.file === name && document.querySelector('.job')?.hasAttribute('hidden');
+  }, {}, name);
+  return page.evaluate(() => {
+    const { info } = /** @type {any} */ (window).voxdag.viewer;
+    return { resolution: info.resolution, voxels: info.voxels, hasColors: info.hasColors };
+  });
+}
+
+/** The scene's file in the page. @param {any} page @returns {Promise<Buffer>} */
+const sceneOf = async (page) => Buffer.from(await page.evaluate(async () => {
+  const bytes = new Uint8Array(await (await /** @type {any} */ (window).voxdag.viewer.scene()).arrayBuffer());
+  let text = '';
+  for (const byte of bytes) text += String.fromCharCode(byte);
+  return btoa(text);
+}), 'base64');
+
+/** Presses a button of the page. @param {any} page @param {string} label */
+const press = (page, label) => page.evaluate((/** @type {string} */ label) => {
+  const found = [...document.querySelectorAll('.panel button, .job button')].find((button) => button.textContent === label);
+  if (!found) throw new Error(`no button ${label}`);
+  found.click();
+}, label);
+
+/** Notes what the page saves instead of saving it: window.saved lists names and bytes. @param {any} page */
+const catchDownloads = (page) => page.evaluate(() => {
+  const saved = /** @type {any} */ (window).saved = /** @type {[string, string][]} */ ([]);
+  const click = HTMLAnchorElement.prototype.click;
+  HTMLAnchorElement.prototype.click = function () {
+    if (!this.download) return click.call(this);
+    const name = this.download;
+    const request = new XMLHttpRequest();
+    request.open('GET', this.href);
+    request.responseType = 'arraybuffer';
+    request.onload = () => {
+      let text = '';
+      for (const byte of new Uint8Array(request.response)) text += String.fromCharCode(byte);
+      saved.push([name, btoa(text)]);
+    };
+    request.send();
+  };
+});
+/** @param {any} page @param {string} kind @returns {Promise<{name: string, bytes: Buffer}>} */
+async function saved(page, kind) {
+  await page.evaluate(() => { /** @type {any} */ (window).saved.length = 0; });
+  await press(page, `.${kind}`);
+  await page.waitForFunction('window.saved.length > 0');
+  const [name, base64] = await page.evaluate('window.saved[0]');
+  return { name, bytes: Buffer.from(base64, 'base64') };
+}
+
+const square = (/** @type {string} */ more) => `${more}v 0 0 0\nv 1 0 0\nv 1 1 0.2\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n${more && 'usemtl paint\n'}f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n`;
+/** A PNG of 2 x 2 pixels. */
+function png() {
+  const chunk = (/** @type {string} */ type, /** @type {Buffer} */ data) => {
+    const body = Buffer.concat([Buffer.from(type), data]), out = Buffer.alloc(body.length + 8);
+    out.writeUInt32BE(data.length, 0);
+    body.copy(out, 4);
+    out.writeUInt32BE(/** @type {any} */ (zlib).crc32 ? /** @type {any} */ (zlib).crc32(body) : crc(body), body.length + 4);
+    return out;
+  };
+  const crc = (/** @type {Buffer} */ bytes) => {
+    let c = ~0;
+    for (const byte of bytes) {
+      c ^= byte;
+      for (let i = 0; i < 8; ++i) c = c & 1 ? (c >>> 1) ^ 0xedb88320 : c >>> 1;
+    }
+    return ~c >>> 0;
+  };
+  return Buffer.concat([Buffer.from('\x89PNG\r\n\x1a\n', 'latin1'), chunk('IHDR', Buffer.from([0, 0, 0, 2, 0, 0, 0, 2, 8, 2, 0, 0, 0])),
+    chunk('IDAT', zlib.deflateSync(Buffer.from([0, 255, 0, 0, 0, 255, 0, 0, 0, 0, 255, 255, 255, 0]))), chunk('IEND', Buffer.alloc(0))]);
+}
+/** An .npy of 8-bit values. @param {number[]} shape @param {(i: number) => number} value */
+function npy(shape, value) {
+  const head = `{'descr': '|u1', 'fortran_order': False, 'shape': (${shape.join(', ')}), }`.padEnd(117) + '\n';
+  return Buffer.concat([Buffer.from('\x93NUMPY\x01\x00v\x00', 'latin1'), Buffer.from(head), Buffer.from(Array.from({ length: shape.reduce((a, b) => a * b) }, (_, i) => value(i)))]);
+}
+
+describeInBrowsers('build', (browserName, browser) => {
+  it('builds the same scene as the native program of each kind of file', async () => {
+    const server = await startSite(), page = await open(browser(), server.url + QUICK, { ...SIZE, ready: 'document.querySelector(".welcome")' });
+    const mesh = build('sponge', 64), stl = path.join(folder, 'box.stl'), glb = path.join(folder, 'sponge.glb'), vox = path.join(folder, 'sponge.vox');
+    voxdag('export', mesh, '-o', glb, '-q');
+    voxdag('export', mesh, '-o', stl, '-q');
+    voxdag('export', mesh, '-o', vox, '-q');
+    buildColored(64);
+    /** @type {[string, string[], {[name: string]: string | Buffer}][]} */
+    const models = [
+      ['square.obj', ['build', '-r', '128', '--color-if-any'], { 'square.obj': square('mtllib square.mtl\n'), 'square.mtl': 'newmtl paint\nmap_Kd paint.png\n', 'paint.png': png() }],
+      ['colored.ply', ['build', '-r', '128', '--color-if-any'], { 'colored.ply': fs.readFileSync(path.join(folder, 'colored.ply')) }],
+      ['box.stl', ['build', '-r', '128', '--color-if-any'], { 'box.stl': fs.readFileSync(stl) }],
+      ['sponge.glb', ['build', '-r', '128', '--color-if-any'], { 'sponge.glb': fs.readFileSync(glb) }],
+      ['sponge.vox', ['import'], { 'sponge.vox': fs.readFileSync(vox) }],
+      ['ball.npy', ['import'], { 'ball.npy': npy([24, 24, 24], (i) => Number(Math.hypot(i % 24 - 12, (Math.floor(i / 24) % 24) - 12, Math.floor(i / 576) - 12) < 10)) }],
+      ['cloud.xyz', ['import', '-r', '128'], { 'cloud.xyz': Array.from({ length: 500 }, (_, i) => `${Math.sin(i)} ${Math.cos(i * 1.7)} ${i / 250}`).join('\n') }]];
+    for (const [name, [command, ...options], files] of models) {
+      const place = path.join(folder, `native-${browserName}-${name}`), native = path.join(place, name.replace(/\.\w+$/, '.vdag'));
+      fs.mkdirSync(place, { recursive: true });
+      for (const [file, contents] of Object.entries(files)) fs.writeFileSync(path.join(place, file), contents);
+      voxdag(command, path.join(place, name), ...options, '-o', native, '-q');
+      await drop(page, files);
+      const numbers = await shown(page, path.basename(native));
+      const made = path.join(place, 'page.vdag');
+      fs.writeFileSync(made, await sceneOf(page));
+      const difference = JSON.parse(voxdag('diff', native, made, '--json'));
+      assert.equal(JSON.parse(voxdag('info', native, '--json')).voxels, numbers.voxels, name);
+      assert.equal(fs.statSync(native).size, fs.statSync(made).size, `${name}: ${JSON.stringify(difference)}`);
+    }
+    for (const [name, contents, text] of /** @type {[string, string, string][]} */ ([
+      ['bad.obj', 'garbage\nf 1 2 3\n', 'Build: bad.obj'], ['cut.stl', 'solid a\nfacet normal 0 0', 'Build: cut.stl'], ['a.zip', 'PK\x03\x04 no', 'a.zip: the ZIP is damaged']])) {
+      await drop(page, { [name]: contents });
+      await message(page, text);
+      assert.equal(await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.file), 'cloud.vdag', 'the scene before stays');
+    }
+    assertNoComplaints(page);
+    await page.close();
+    server.close();
+  });
+
+  it('says what a build takes, builds it, and can cancel it', async () => {
+    const server = await startSite(), page = await open(browser(), server.url + QUICK, { ...SIZE, ready: 'document.querySelector(".welcome")' });
+    buildColored(64);
+    await drop(page, { 'colored.ply': fs.readFileSync(path.join(folder, 'colored.ply')) });
+    const coarse = await shown(page, 'colored.vdag');
+    assert.ok(coarse.hasColors);
+    assert.match(await page.evaluate(() => document.querySelector('.panel-body')?.textContent), /colored\.ply.*Colours.*About .* voxels, .* MB of memory, .*s/);
+    const choose = (/** @type {number} */ level) => page.evaluate((level) => {
+      const slider = /** @type {HTMLInputElement} */ (document.querySelector('.panel input[type=range]'));
+      slider.value = String(level);
+      slider.dispatchEvent(new Event('input'));
+    }, level);
+    await choose(13);
+    await press(page, 'Build');
+    await page.waitForFunction('!document.querySelector(".job").hidden');
+    await press(page, 'Cancel');
+    await message(page, 'Cancelled');
+    assert.equal(await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.info.resolution), coarse.resolution, 'the scene before stays');
+    await choose(8);
+    await press(page, 'Build');
+    await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.info.resolution === 256);
+    assertNoComplaints(page);
+    await page.close();
+    server.close();
+  });
+
+  it('survives a worker that ends, and ten scenes in a row', async () => {
+    const server = await startSite(), page = await open(browser(), server.url + QUICK, { ...SIZE, ready: 'document.querySelector(".welcome")' });
+    // The first worker ends as it begins, as if the browser had ended it.
+    await page.evaluate(() => {
+      const { Worker } = window;
+      window.Worker = class extends Worker {
+        /** @param {string | URL} url */
+        constructor(url) {
+          super(url);
+          this.addEventListener('message', ({ data }) => {
+            if (data.type !== 'lock') return;
+            window.Worker = Worker;
+            this.terminate();
+          });
+        }
+      };
+    });
+    await drop(page, { 'square.obj': square('') });
+    await message(page, 'Build: the browser has ended the work');
+    await page.evaluate(() => document.querySelector('.toast.error')?.toggleAttribute('hidden', true));
+    for (let i = 0; i < 10; ++i) {
+      await drop(page, { [`square${i}.obj`]: square('') });
+      await shown(page, `square${i}.vdag`);
+    }
+    assert.equal(page.workers().length <= 2, true, 'workers end');
+    assertNoComplaints(page);
+    await page.close();
+    server.close();
+  });
+
+  it('builds and saves from disk, offline', async () => {
+    const single = path.join(folder, 'voxdag.html');
+    voxdag('export', build('sponge', 64), '-o', single, '-q');
+    fs.writeFileSync(single, fs.readFileSync(single, 'latin1').replace(/id="scene">[^<]*(?=<\/script>\n<script type="module")/, 'id="scene">'), 'latin1');
+    const page = await open(browser(), pathToFileURL(single).href + QUICK, { ...SIZE, ready: 'document.querySelector(".welcome")' });
+    await drop(page, { 'square.obj': square('') });
+    const numbers = await shown(page, 'square.vdag');
+    await catchDownloads(page);
+    await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('share'));
+    for (const kind of ['vdag', 'vox', 'glb', 'stl']) assert.ok((await saved(page, kind)).bytes.length > 100, kind);
+    const { name, bytes } = await saved(page, 'html'), copy = path.join(folder, `copy-${browserName}.html`);
+    assert.equal(name, 'square.html');
+    fs.writeFileSync(copy, bytes);
+    assertNoComplaints(page);
+    await page.close();
+    const second = await open(browser(), pathToFileURL(copy).href + QUICK, { ...SIZE, ready: 'window.voxdag?.viewer?.info' });
+    assert.equal(await second.evaluate(() => /** @type {any} */ (window).voxdag.viewer.info.voxels), numbers.voxels);
+    // A copy builds, and makes copies, too.
+    await drop(second, { 'other.obj': square('') });
+    await shown(second, 'other.vdag');
+    assertNoComplaints(second);
+    await second.close();
+  });
+});
