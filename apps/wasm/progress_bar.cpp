@@ -1,4 +1,5 @@
-/// Replaces cli/progress_bar.cpp: reports to Module.onProgress(stage, fraction) of the module's maker.
+/// Replaces cli/progress_bar.cpp: reports to Module.onProgress(stage, fraction) of the module's
+/// maker.
 #include "cli/progress_bar.hpp"
 
 #include <emscripten.h>

@@ -1,9 +1,10 @@
 // What libcxx14.hpp declares.
+#include <fast_float/fast_float.h>
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fast_float/fast_float.h>
 
 namespace std {
 
@@ -32,8 +33,12 @@ static to_chars_result shortest(char* first, char* last, T value) {
   return put(first, last, strlen(fixed) <= strlen(digits) ? fixed : digits);
 }
 
-to_chars_result to_chars(char* first, char* last, double value) { return shortest(first, last, value); }
-to_chars_result to_chars(char* first, char* last, float value) { return shortest(first, last, value); }
+to_chars_result to_chars(char* first, char* last, double value) {
+  return shortest(first, last, value);
+}
+to_chars_result to_chars(char* first, char* last, float value) {
+  return shortest(first, last, value);
+}
 to_chars_result to_chars(char* first, char* last, double value, chars_format, int digits) {
   char text[40];
   snprintf(text, sizeof text, "%.*g", digits, value);

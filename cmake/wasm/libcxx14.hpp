@@ -1,5 +1,5 @@
-// Included before every source of a build for browsers: what libc++ 14, the standard library of Debian 12's
-// emscripten, lacks of C++20.
+// Included before every source of a build for browsers: what libc++ 14, the standard library of
+// Debian 12's emscripten, lacks of C++20.
 #pragma once
 #ifdef __cplusplus
 #include <atomic>
@@ -13,22 +13,38 @@ template <class T>
 struct atomic_ref {
   explicit atomic_ref(T& value) : value_(&value) {}
 
-  T load(memory_order order = memory_order_seq_cst) const { return __atomic_load_n(value_, int(order)); }
-  void store(T value, memory_order order = memory_order_seq_cst) const { __atomic_store_n(value_, value, int(order)); }
-  T exchange(T value, memory_order order = memory_order_seq_cst) const { return __atomic_exchange_n(value_, value, int(order)); }
-  bool compare_exchange_strong(T& expected, T value, memory_order order = memory_order_seq_cst) const {
+  T load(memory_order order = memory_order_seq_cst) const {
+    return __atomic_load_n(value_, int(order));
+  }
+  void store(T value, memory_order order = memory_order_seq_cst) const {
+    __atomic_store_n(value_, value, int(order));
+  }
+  T exchange(T value, memory_order order = memory_order_seq_cst) const {
+    return __atomic_exchange_n(value_, value, int(order));
+  }
+  bool compare_exchange_strong(T& expected, T value,
+                               memory_order order = memory_order_seq_cst) const {
     return __atomic_compare_exchange_n(value_, &expected, value, false, int(order), failure(order));
   }
-  bool compare_exchange_strong(T& expected, T value, memory_order order, memory_order failed) const {
+  bool compare_exchange_strong(T& expected, T value, memory_order order,
+                               memory_order failed) const {
     return __atomic_compare_exchange_n(value_, &expected, value, false, int(order), int(failed));
   }
-  T fetch_add(T value, memory_order order = memory_order_seq_cst) const { return __atomic_fetch_add(value_, value, int(order)); }
-  T fetch_or(T value, memory_order order = memory_order_seq_cst) const { return __atomic_fetch_or(value_, value, int(order)); }
-  T fetch_xor(T value, memory_order order = memory_order_seq_cst) const { return __atomic_fetch_xor(value_, value, int(order)); }
+  T fetch_add(T value, memory_order order = memory_order_seq_cst) const {
+    return __atomic_fetch_add(value_, value, int(order));
+  }
+  T fetch_or(T value, memory_order order = memory_order_seq_cst) const {
+    return __atomic_fetch_or(value_, value, int(order));
+  }
+  T fetch_xor(T value, memory_order order = memory_order_seq_cst) const {
+    return __atomic_fetch_xor(value_, value, int(order));
+  }
 
  private:
   static int failure(memory_order order) {
-    return order == memory_order_release ? __ATOMIC_RELAXED : order == memory_order_acq_rel ? __ATOMIC_ACQUIRE : int(order);
+    return order == memory_order_release   ? __ATOMIC_RELAXED
+           : order == memory_order_acq_rel ? __ATOMIC_ACQUIRE
+                                           : int(order);
   }
   T* value_;
 };

@@ -27,8 +27,7 @@ Job::Job(Session& session) : progress_(session.progress), ranks_(join_ranks(&ses
   }
   // Also with --threads, because all ranks must take part, and their options may differ.
   const int here = ranks_per_machine(*ranks_).here;
-  if (session.threads == 0)
-    threads_.emplace(threads_of_rank(here));
+  if (session.threads == 0) threads_.emplace(threads_of_rank(here));
 }
 
 bool Job::fails_first() {

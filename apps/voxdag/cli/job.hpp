@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "cli/session.hpp"
-#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/cluster/ranks.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 
 namespace voxdag::cli {
 

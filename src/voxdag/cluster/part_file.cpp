@@ -1,7 +1,8 @@
 #include "voxdag/cluster/part_file.hpp"
-#include "voxdag/core/checked_size.hpp"
 
 #include <algorithm>
+
+#include "voxdag/core/checked_size.hpp"
 
 namespace voxdag {
 namespace {

@@ -122,8 +122,7 @@ void write_segment(const WorkFolder& folder, std::uint64_t index, const SharedMe
   PageVector<double> voxels(work.memory);
   PageVector<Entry> entries(work.memory);
   // A few batches at a time, which are then joined in order.
-  const std::uint64_t step =
-      2 * kBatch * thread_count();
+  const std::uint64_t step = 2 * kBatch * thread_count();
   for (std::uint64_t begin = first; begin < last; begin += step) {
     const std::uint64_t end = std::min(last, begin + step);
     std::vector<Batch> batches((end - begin + kBatch - 1) / kBatch);

@@ -8,8 +8,8 @@
 
 namespace voxdag {
 
-/// Returns `count` as a size. Throws OverMemory, as `subject` (a file's name, or empty), if no array
-/// in memory can have so many items.
+/// Returns `count` as a size. Throws OverMemory, as `subject` (a file's name, or empty), if no
+/// array in memory can have so many items.
 inline std::size_t checked_size(std::uint64_t count, const char* subject = "") {
   if constexpr (sizeof(std::size_t) < sizeof(std::uint64_t))
     if (count > std::numeric_limits<std::size_t>::max())

@@ -122,8 +122,7 @@ class PageVector {
     const std::size_t more = bytes_ < kSmall ? bytes_ : bytes_ / 8;
     const std::size_t bytes = std::max(page_bytes(count), page_bytes((bytes_ + more) / sizeof(T)));
     if (budget_ != nullptr) budget_->reserve(bytes - bytes_);
-    void* const memory =
-        data_ == nullptr ? map_pages(bytes) : resize_pages(data_, bytes_, bytes);
+    void* const memory = data_ == nullptr ? map_pages(bytes) : resize_pages(data_, bytes_, bytes);
     if (memory == nullptr) {
       if (budget_ != nullptr) budget_->release(bytes - bytes_);
       throw std::bad_alloc();

@@ -61,8 +61,7 @@ WireParts read_parts(std::span<const std::byte> bytes) {
       (header.coded_bytes + 7) / 8 * 8 != rest - segments * sizeof(wire::WireSegment))
     fail_at("", "has " + std::to_string(bytes.size()) + " bytes, but its header needs others");
   const std::byte* const table = bytes.data() + sizeof header;
-  parts.segments = {reinterpret_cast<const wire::WireSegment*>(table),
-                    checked_size(segments)};
+  parts.segments = {reinterpret_cast<const wire::WireSegment*>(table), checked_size(segments)};
   parts.coded =
       bytes.subspan(sizeof header + segments * sizeof(wire::WireSegment), header.coded_bytes);
   const std::size_t padding = (8 - header.coded_bytes % 8) % 8;

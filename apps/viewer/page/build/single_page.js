@@ -12,7 +12,7 @@ export const isSinglePage = () => document.querySelector('script[type=importmap]
 function ownText() {
   const scripts = [...document.querySelectorAll('body > script:not(#scene)')], entry = scripts.find((script) => /** @type {HTMLScriptElement} */ (script).type === 'module');
   const others = scripts.filter((script) => script !== entry).map((script) => script.outerHTML + '\n');
-  return `<!doctype html>\n<html lang="en">\n${document.head.outerHTML}\n<body>\n${shell}\n${others.join('')}<script type="text/plain" id="scene"></script>\n${entry?.outerHTML}\n</body>\n</html>\n`;
+  return `<!doctype html>\n<html lang="en">\n${document.head.outerHTML}\n<body>\n${shell}\n${others.join('')}<script type="text/plain" id="scene"><\/script>\n${entry?.outerHTML}\n</body>\n</html>\n`;
 }
 
 async function fetchedText() {
@@ -28,7 +28,7 @@ export async function pageWith(scene, title, settings) {
   const begin = text.slice(0, at)
     .replace(/<title>[^<]*<\/title>/, () => `<title>${title.replaceAll('&', '&amp;').replaceAll('<', '&lt;')}</title>`)
     .replace(/\n?<script type="application\/json" id="settings">[^<]*<\/script>/, '')
-    .replace('</main>', () => `</main>\n<script type="application/json" id="settings">${settings.replaceAll('<', '\\u003c')}</script>`);
+    .replace('</main>', () => `</main>\n<script type="application/json" id="settings">${settings.replaceAll('<', '\\u003c')}<\/script>`);
   const packed = await new Response(scene.stream().pipeThrough(new CompressionStream('gzip'))).blob(), parts = [begin];
   for (let i = 0; i < packed.size; i += PART) parts.push(await base64(packed.slice(i, i + PART)));
   return new Blob([...parts, text.slice(at)], { type: 'text/html' });

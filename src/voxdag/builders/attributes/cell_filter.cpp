@@ -1,6 +1,7 @@
 #include "voxdag/builders/attributes/cell_filter.hpp"
 
 #include <bit>
+
 #include "voxdag/core/checked_size.hpp"
 
 namespace voxdag {

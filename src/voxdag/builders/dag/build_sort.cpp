@@ -15,8 +15,8 @@
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/per_thread.hpp"
-#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/stored/svdag/canonical_order.hpp"
 
 namespace voxdag {

@@ -27,7 +27,8 @@ namespace voxdag {
 /// Cancelled.
 #ifdef VOXDAG_TBB
 
-// This function owns the results itself: tbb::parallel_pipeline leaks its tokens if a filter throws.
+// This function owns the results itself: tbb::parallel_pipeline leaks its tokens if a filter
+// throws.
 template <class Make, class Use>
 void ordered_pipeline(std::size_t count, std::size_t most_waiting, Work work, const Make& make,
                       const Use& use) {

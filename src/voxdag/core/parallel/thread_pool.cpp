@@ -75,7 +75,8 @@ void ThreadPool::work() {
     loop_begins_.wait(lock, [&] {
       if (ends_) return true;
       if (helping_ + 1 >= thread_count()) return false;
-      while (!loops_.empty() && loops_.back()->next.load(std::memory_order_relaxed) >= loops_.back()->count)
+      while (!loops_.empty() &&
+             loops_.back()->next.load(std::memory_order_relaxed) >= loops_.back()->count)
         loops_.pop_back();
       if (!loops_.empty()) loop = loops_.back();
       return loop != nullptr;

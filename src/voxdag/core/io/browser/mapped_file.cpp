@@ -36,8 +36,8 @@ MappedFile::MappedFile(const OpenInput& input, const std::filesystem::path& path
                          " MiB, more than the memory of a page of the browser has left");
   bytes_ = {bytes, size};
   for (std::size_t done = 0; done < size;) {
-    const ssize_t got = ::pread(input.descriptor.get(), bytes + done, size - done,
-                                static_cast<off_t>(done));
+    const ssize_t got =
+        ::pread(input.descriptor.get(), bytes + done, size - done, static_cast<off_t>(done));
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) {
       const std::string reason = got < 0 ? std::system_category().message(errno)

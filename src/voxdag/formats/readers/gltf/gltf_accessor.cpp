@@ -1,9 +1,10 @@
-#include "voxdag/core/checked_size.hpp"
 #include "voxdag/formats/readers/gltf/gltf_accessor.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
+
+#include "voxdag/core/checked_size.hpp"
 
 namespace voxdag {
 namespace {

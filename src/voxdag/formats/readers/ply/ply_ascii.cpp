@@ -1,8 +1,8 @@
 /// Reads the body of an ascii PLY file, which has one row per line. One pass over chunks of lines
 /// counts the rows, a second pass counts the triangles. Then all values are parsed into arrays of
 /// their final size.
-#include "voxdag/formats/readers/ply/ply_rows.hpp"
 #include "voxdag/core/checked_size.hpp"
+#include "voxdag/formats/readers/ply/ply_rows.hpp"
 #include "voxdag/formats/readers/ply/ply_text_row.hpp"
 
 namespace voxdag {

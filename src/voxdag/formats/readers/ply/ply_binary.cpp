@@ -1,8 +1,8 @@
 /// Reads the binary body of a PLY file. Rows with lists differ in size, so a sequential pass finds
 /// the starts of blocks of rows and their numbers of triangles. Then threads read the blocks. If
 /// all faces are triangles, all rows have known places, and PlyMeshChunks needs no such pass.
-#include "voxdag/formats/readers/ply/ply_binary_rows.hpp"
 #include "voxdag/core/checked_size.hpp"
+#include "voxdag/formats/readers/ply/ply_binary_rows.hpp"
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 
 namespace voxdag {
@@ -162,9 +162,9 @@ struct FixedRows {
   std::size_t row_bytes = 0;
 
   PlyRows rows(std::string_view file, std::uint64_t first, std::uint64_t last) const {
-    return {file.substr(checked_size(at + first * row_bytes),
-                        checked_size((last - first) * row_bytes)),
-            checked_size(first), checked_size(last - first)};
+    return {
+        file.substr(checked_size(at + first * row_bytes), checked_size((last - first) * row_bytes)),
+        checked_size(first), checked_size(last - first)};
   }
 };
 
