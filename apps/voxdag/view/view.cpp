@@ -50,8 +50,9 @@ void serve_page(const SceneBytes& scene, const PageView& shown, const ViewArgume
 }
 
 void view(const ViewArguments& arguments, Session& session) {
+  const PageView shown = read_page_view(arguments.page_view);
   const ShownScene scene = ShownScene::open(session.subject, arguments.scene, session);
-  serve_page(scene.bytes(), read_page_view(arguments.page_view), arguments, session);
+  serve_page(scene.bytes(), shown, arguments, session);
 }
 
 /// Shows the start page.
