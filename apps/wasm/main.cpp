@@ -1,4 +1,4 @@
-/// The voxdag command line for browsers: see index.js.
+/// The voxdag command line for browsers: apps/viewer/page/build/program.js runs it.
 #include "cli/commands.hpp"
 #include "cli/run_program.hpp"
 
@@ -7,14 +7,11 @@ int main(int argc, char** argv) {
   return run_program(argc, argv,
                      {.name = "voxdag",
                       .version = VOXDAG_VERSION,
-                      .purpose = "Sparse voxel DAGs and octrees from triangle meshes.",
+                      .purpose = "Sparse voxel DAGs from meshes, points, volumes and voxels.",
                       .families = {
                           {"Build",
                            {add_scene_command, add_build_command, add_import_command,
-                            add_convert_command, add_coarsen_command}},
-                          {"Edit",
-                           {add_combine_command, add_diff_command, add_components_command,
-                            add_edit_command, add_edit_commands}},
-                          {"Inspect", {add_info_command, add_verify_command, add_export_command}},
+                            add_convert_command}},
+                          {"Inspect", {add_info_command, add_export_command}},
                       }});
 }

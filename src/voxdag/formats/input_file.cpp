@@ -1,6 +1,5 @@
 #include "voxdag/formats/input_file.hpp"
 
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zstd.h>
@@ -17,6 +16,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/core/io/nameless_file.hpp"
 #include "voxdag/core/io/resolved_output.hpp"
 #include "voxdag/core/io/unpacked_name.hpp"
 #include "voxdag/formats/imports/volumes/gzip_stream.hpp"
@@ -39,7 +39,7 @@ class MemoryFile {
   MemoryFile(const fs::path& given, Work work)
       : given_(given),
         work_(work),
-        descriptor_(memfd_create("voxdag", MFD_CLOEXEC)),
+        descriptor_(open_memory_file()),
         reservation_(work.memory, 0) {
     if (!descriptor_.is_open()) fail("cannot unpack");
   }

@@ -120,7 +120,7 @@ void AtomicFile::commit() {
   flush();
   if (is_nameless_) take_name();
   // Keeps the lock until the file has its final name.
-  const Descriptor lock(fcntl(descriptor_, F_DUPFD_CLOEXEC, 0));
+  const Descriptor lock = duplicate(descriptor_);
   // Some file systems (NFS, quotas) report a failed write only here.
   if (close(std::exchange(descriptor_, -1)) != 0) fail(position(), errno);
   if (temporary_.empty()) return;
@@ -136,7 +136,7 @@ void AtomicFile::share(int descriptor) {
   // A descriptor that this program opened itself is not an output that the user named.
   const bool is_own = (fcntl(descriptor, F_GETFD) & FD_CLOEXEC) != 0;
   if (is_own || (flags & O_ACCMODE) == O_RDONLY) fail(0, EBADF);
-  descriptor_ = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+  descriptor_ = duplicate(descriptor).release();
   if (descriptor_ < 0) fail(0, errno);
   is_appended_ = (flags & O_APPEND) != 0;
   const off_t start = lseek(descriptor_, 0, SEEK_CUR);

@@ -15,6 +15,13 @@ int open_nameless_file(const std::filesystem::path& folder);
 /// and sets errno, if that fails.
 Descriptor open_scratch_file(const std::filesystem::path& folder);
 
+/// Opens an empty file in memory, for reading and writing. A program that this one starts has it only
+/// if it `is_inherited`. Returns no descriptor, and sets errno, if that fails.
+Descriptor open_memory_file(bool is_inherited = false);
+
+/// Returns another descriptor of the same open file, or none, with errno.
+Descriptor duplicate(int descriptor) noexcept;
+
 /// Gives a nameless file a name in the folder that it was created for. Returns 0, or the system's
 /// error: EEXIST if the name is taken.
 int name_file(int descriptor, const std::filesystem::path& name) noexcept;

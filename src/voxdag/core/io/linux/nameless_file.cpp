@@ -1,6 +1,7 @@
 #include "voxdag/core/io/nameless_file.hpp"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/sendfile.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -37,6 +38,14 @@ Descriptor open_scratch_file(const std::filesystem::path& folder) {
   Descriptor file(mkostemp(name.data(), O_CLOEXEC));
   if (file.is_open()) unlink(name.c_str());
   return file;
+}
+
+Descriptor open_memory_file(bool is_inherited) {
+  return Descriptor(memfd_create("voxdag", is_inherited ? 0 : MFD_CLOEXEC));
+}
+
+Descriptor duplicate(int descriptor) noexcept {
+  return Descriptor(fcntl(descriptor, F_DUPFD_CLOEXEC, 0));
 }
 
 int name_file(int descriptor, const std::filesystem::path& name) noexcept {

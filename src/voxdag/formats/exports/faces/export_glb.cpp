@@ -1,4 +1,3 @@
-#include <sys/mman.h>
 
 #include <array>
 #include <nlohmann/json.hpp>
@@ -7,6 +6,7 @@
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/io/descriptor.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/core/io/nameless_file.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
 #include "voxdag/formats/exports/faces/export_faces.hpp"
@@ -38,8 +38,8 @@ std::uint16_t linear16(std::uint8_t srgb) {
 
 /// Returns the PNG file of an image, padded with zeros to a multiple of 4 bytes.
 std::string png_bytes(const ImageRgb8& image) {
-  // AtomicFile writes to no descriptor with MFD_CLOEXEC.
-  const Descriptor memory(memfd_create("texture", 0));
+  // AtomicFile writes to no descriptor that programs do not inherit.
+  const Descriptor memory = open_memory_file(/*is_inherited=*/true);
   const std::string path = "/proc/self/fd/" + std::to_string(memory.get());
   write_png(path, image);
   std::string bytes(MappedFile(path).text());

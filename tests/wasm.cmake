@@ -1,0 +1,29 @@
+# The tests of a build for browsers (preset wasm): the library's, under Node with the machine's files. Those that
+# need processes, mapped files or libraries that are left out are not among them.
+add_library(gtest STATIC EXCLUDE_FROM_ALL /usr/src/googletest/googletest/src/gtest-all.cc)
+target_include_directories(gtest SYSTEM PUBLIC /usr/src/googletest/googletest/include PRIVATE /usr/src/googletest/googletest)
+target_compile_options(gtest PRIVATE -w)
+set_target_properties(gtest PROPERTIES UNITY_BUILD OFF)
+
+file(GLOB_RECURSE tests CONFIGURE_DEPENDS core/*_test.cpp mesh/*_test.cpp stored/*_test.cpp algebra/*_test.cpp edit/*_test.cpp
+  builders/*_test.cpp file/*_test.cpp formats/*_test.cpp)
+# Files of these suites ask for what browsers lack.
+foreach(left_out core/io/confined_child core/io/atomic_file core/io/mapped_arrays core/io/open_input builders/dag/memory
+    formats/readers/memory formats/readers/resident_memory formats/input_file)
+  list(REMOVE_ITEM tests ${CMAKE_CURRENT_SOURCE_DIR}/${left_out}_test.cpp)
+endforeach()
+foreach(source ${tests})
+  get_filename_component(folder ${source} DIRECTORY)
+  set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${folder})
+endforeach()
+add_executable(wasm_tests ${tests} support/main.cpp)
+set_source_files_properties(support/main.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+set_target_properties(wasm_tests PROPERTIES UNITY_BUILD_MODE GROUP RULE_LAUNCH_LINK "${CMAKE_COMMAND} -E env NODE_PATH=/usr/share/nodejs")
+target_include_directories(wasm_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+target_link_libraries(wasm_tests PRIVATE voxdag_settings voxdag_formats voxdag_edit gtest nlohmann_json::nlohmann_json
+  minizip::minizip zstd::zstd draco::draco meshoptimizer::meshoptimizer PNG::PNG JPEG::JPEG WebP::webp)
+target_link_options(wasm_tests PRIVATE -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sNODERAWFS=1 -sENVIRONMENT=node -sEXIT_RUNTIME=1)
+target_compile_definitions(wasm_tests PRIVATE
+  VOXDAG_EXPECTATIONS="${CMAKE_CURRENT_SOURCE_DIR}/formats/readers/pathological_expectations.txt"
+  VOXDAG_HAS_OPENVDB=0 VOXDAG_HAS_VDB_EXPORT=0)
+add_test(NAME wasm.library COMMAND ${CMAKE_CROSSCOMPILING_EMULATOR} $<TARGET_FILE:wasm_tests>)
