@@ -36,7 +36,7 @@ endif()
 set(VOXDAG_PIC ON)
 if(EMSCRIPTEN)
   set(VOXDAG_PIC OFF)
-  string(REPLACE "-O3" "-Os" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
+  string(REPLACE "-O3" "-O2" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
   # WebAssembly's own exceptions and vectors: Chromium 95, Firefox 100, Safari 16.4, Node 18 and later.
   add_compile_options(-fwasm-exceptions -msimd128)
   add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include ${PROJECT_SOURCE_DIR}/cmake/wasm/libcxx14.hpp>")

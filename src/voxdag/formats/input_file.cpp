@@ -37,10 +37,7 @@ fs::path path_of(const Descriptor& descriptor) {
 class MemoryFile {
  public:
   MemoryFile(const fs::path& given, Work work)
-      : given_(given),
-        work_(work),
-        descriptor_(open_memory_file()),
-        reservation_(work.memory, 0) {
+      : given_(given), work_(work), descriptor_(open_memory_file()), reservation_(work.memory, 0) {
     if (!descriptor_.is_open()) fail("cannot unpack");
   }
 

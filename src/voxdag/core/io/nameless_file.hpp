@@ -15,8 +15,8 @@ int open_nameless_file(const std::filesystem::path& folder);
 /// and sets errno, if that fails.
 Descriptor open_scratch_file(const std::filesystem::path& folder);
 
-/// Opens an empty file in memory, for reading and writing. A program that this one starts has it only
-/// if it `is_inherited`. Returns no descriptor, and sets errno, if that fails.
+/// Opens an empty file in memory, for reading and writing. A program that this one starts has it
+/// only if it `is_inherited`. Returns no descriptor, and sets errno, if that fails.
 Descriptor open_memory_file(bool is_inherited = false);
 
 /// Returns another descriptor of the same open file, or none, with errno.
