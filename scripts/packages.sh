@@ -29,6 +29,9 @@ voxdag_extended_packages=(
   clang clang-tidy libclang-rt-14-dev
 )
 
+# scripts/site.sh builds the program for browsers with these.
+voxdag_wasm_packages=(emscripten googletest)
+
 # The tests of the viewer in browsers skip themselves without these.
 voxdag_browser_packages=(chromium firefox-esr xvfb xauth)
 # A Node from elsewhere brings its own npm, which conflicts with Debian's package.

@@ -1,4 +1,4 @@
-// What libcxx14.hpp declares.
+// Converts numbers with a fraction to text and back, as libcxx14.hpp declares.
 #include <fast_float/fast_float.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Included before every source of a build for browsers: what libc++ 14, the standard library of
-// Debian 12's emscripten, lacks of C++20.
+// Defines the parts of C++20 that libc++ 14 lacks, the standard library of Debian 12's emscripten.
+// A build for browsers includes this file before every source.
 #pragma once
 #ifdef __cplusplus
 #include <atomic>
@@ -57,7 +57,7 @@ constexpr To bit_cast(const From& from) noexcept {
 }
 #endif
 
-// Numbers with a fraction: libcxx14.cpp.
+// libcxx14.cpp defines the conversions of numbers with a fraction.
 to_chars_result to_chars(char* first, char* last, double value);
 to_chars_result to_chars(char* first, char* last, float value);
 to_chars_result to_chars(char* first, char* last, double value, chars_format general, int digits);

@@ -17,6 +17,21 @@ TEST_F(ExportPage, AFolderAndAFile) {
   EXPECT_TRUE(read_text(dir_ / "a.html").starts_with("<!doctype html>"));
 }
 
+TEST_F(ExportPage, WithoutASceneItBeginsWithTheStartPage) {
+  const std::string site = dir_ / "site/", page = dir_ / "a.html";
+  EXPECT_EQ(run_voxdag({"export", "-o", site, "--title", "Drop here"}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(site + "scene.vdag"));
+  const std::string index = read_text(site + "index.html");
+  for (const char* part : {"<title>Drop here</title>", "default-src 'none'", "connect-src 'self'",
+                           R"(id="scene"></script>)"})
+    EXPECT_NE(index.find(part), std::string::npos) << part;
+  EXPECT_EQ(run_voxdag({"export", "-o", page}).status, 0);
+  EXPECT_NE(read_text(page).find(R"(id="scene"></script>)"), std::string::npos);
+  expect_failure(run_voxdag({"export", "-o", dir_ / "a.glb"}), 2, "FILE");
+  for (const std::string option : {"--poster", "--levels=5"})
+    expect_failure(run_voxdag({"export", "-o", page, option}), 2, "without FILE");
+}
+
 TEST_F(ExportPage, LevelsMakeItCoarser) {
   ASSERT_EQ(run_voxdag({"convert", plain_, "--levels", "5", "-o", dir_ / "5.vdag"}).status, 0);
   ASSERT_EQ(run_voxdag({"export", plain_, "--levels", "5", "-o", dir_ / "site/"}).status, 0);

@@ -1,7 +1,7 @@
 #pragma once
 /// Runs a part of a test on a given number of threads.
 #include <cstddef>
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
 #include <tbb/task_arena.h>
 #else
 #include "voxdag/core/parallel/thread_count.hpp"
@@ -13,7 +13,7 @@ namespace voxdag {
 /// machine has processors.
 template <class Body>
 decltype(auto) with_threads(std::size_t threads, const Body& body) {
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
   return tbb::task_arena(static_cast<int>(threads)).execute(body);
 #else
   const ThreadLimit limit(threads);

@@ -29,6 +29,15 @@ class SceneBytes {
   virtual bool read(std::uint64_t offset, std::span<std::byte> out) const = 0;
 };
 
+/// The scene of a page that begins without one.
+class NoScene final : public SceneBytes {
+ public:
+  std::uint64_t size() const override { return 0; }
+  std::string tag() const override { return "none"; }
+  bool is_unchanged() const override { return true; }
+  bool read(std::uint64_t, std::span<std::byte>) const override { return false; }
+};
+
 /// Files up to this size are checked completely before they are shown. For larger files, only the
 /// header, the chunk table and META are checked; the page checks the levels that it uses.
 inline constexpr std::uint64_t kWholeCheckBytes = std::uint64_t{32} << 20;

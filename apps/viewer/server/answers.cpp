@@ -19,15 +19,6 @@ namespace {
 constexpr char kScenePath[] = "/scene.vdag";
 constexpr char kSceneType[] = "application/octet-stream";
 
-/// Allows only what the page needs: files of this server; a worker and pictures that the page makes
-/// itself (blob:); pictures in its style sheet (data:); the program that builds, in WebAssembly.
-/// Forbids inline scripts and styles, and frames of other sites around the page.
-constexpr char kContentSecurityPolicy[] =
-    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src blob:; connect-src "
-    "'self' blob: data:; "
-    "style-src 'self'; img-src 'self' data: blob:; font-src 'self'; base-uri 'none'; "
-    "form-action 'none'; frame-ancestors 'self'";
-
 /// The parts of the scene that a request asks for.
 struct PlannedRanges {
   bool are_wrong = false;         ///< No range can be served.
@@ -90,7 +81,8 @@ void give(httplib::Response& response, std::uint64_t size, const std::string& ty
 
 const httplib::Headers& Answers::default_headers() {
   static const httplib::Headers headers = {
-      {"Content-Security-Policy", kContentSecurityPolicy},
+      // Nor may other sites show the page in a frame.
+      {"Content-Security-Policy", std::string(kPagePolicy) + "; frame-ancestors 'self'"},
       // Browsers believe the types that the server says, and run no other file as a script.
       {"X-Content-Type-Options", "nosniff"},
       // Other sites can neither embed the scene nor get a handle of the page's window.

@@ -18,8 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kSceneName[] = "scene.vdag";
-/// The page in one file without a scene: the page saves scenes in copies of it.
-constexpr char kTemplateName[] = "voxdag.html";
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what,
                        const std::error_code& error) {
@@ -65,16 +63,17 @@ std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Work 
     const fs::path path = site.path() / file.path;
     fs::create_directories(path.parent_path(), error);
     if (error) fail(target, "cannot create", error);
-    write_whole_file(path, file.bytes);
-    bytes += file.bytes.size();
+    std::string text(file.bytes);
+    if (file.path == "index.html") add_policy(text, kPagePolicy);
+    write_whole_file(path, text);
+    bytes += text.size();
   }
   if (has_program(files)) {
-    const SinglePage page = make_single_page(files);
-    const std::string text = page.before + page.after;
+    const std::string text = make_template_page();
     write_whole_file(site.path() / kTemplateName, text);
     bytes += text.size();
   }
-  write_scene(site.path() / kSceneName, scene, work);
+  if (scene.size() > 0) write_scene(site.path() / kSceneName, scene, work);
   site.take_name();
   return bytes;
 }
@@ -84,12 +83,14 @@ std::uint64_t export_single_page(const std::filesystem::path& path, const SceneB
   const SinglePage page = make_single_page(files);
   AtomicFile file(path);
   file.write(page.before);
-  Gzip gzip;
-  Base64 encoder;
-  const auto write = [&](std::string_view compressed) { file.write(encoder.add(compressed)); };
-  for_each_piece(scene, work, [&](auto piece) { gzip.add(piece, write); });
-  gzip.finish(write);
-  file.write(encoder.finish());
+  if (scene.size() > 0) {
+    Gzip gzip;
+    Base64 encoder;
+    const auto write = [&](std::string_view compressed) { file.write(encoder.add(compressed)); };
+    for_each_piece(scene, work, [&](auto piece) { gzip.add(piece, write); });
+    gzip.finish(write);
+    file.write(encoder.finish());
+  }
   file.write(page.after);
   const std::uint64_t bytes = file.position();
   file.commit();

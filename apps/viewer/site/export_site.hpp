@@ -15,7 +15,7 @@ inline constexpr std::uint64_t kHandyPageBytes = std::uint64_t{64} << 20;
 /// Writes a folder with the page's files and "scene.vdag", completely or not at all: it fills a
 /// temporary folder, then renames it. Replaces an existing folder if that has no files but these.
 /// Returns the bytes of all files. `files` are those of page_files(), or of a BakedPage. Throws
-/// Error, and Cancelled.
+/// Error, and Cancelled. With NoScene, there is no "scene.vdag".
 std::uint64_t export_site(const std::filesystem::path& folder, const SceneBytes& scene,
                           Work work = {}, std::span<const PageFile> files = page_files());
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "viewer/embedded/baked_page.hpp"
 #include "viewer/site/module_imports.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/base64.hpp"
@@ -10,11 +11,11 @@
 namespace voxdag {
 namespace {
 
-constexpr std::string_view kPolicy =
-    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src "
-    "'unsafe-inline' 'wasm-unsafe-eval' data:; style-src 'unsafe-inline'; img-src data: blob:; "
-    "font-src data:; "
-    "worker-src blob:; connect-src data: blob:; base-uri 'none'; form-action 'none'\">\n";
+/// Forbids all connections: the page holds all that it needs.
+constexpr std::string_view kSinglePagePolicy =
+    "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' data:; "
+    "style-src 'unsafe-inline'; img-src data: blob:; font-src data:; worker-src blob:; "
+    "connect-src data: blob:; base-uri 'none'; form-action 'none'";
 
 const PageFile& file_at(std::span<const PageFile> files, std::string_view path,
                         std::string_view user) {
@@ -101,7 +102,7 @@ class PageBuilder {
     }
     text_.append(html.substr(at));
     if (entry_.empty()) throw Error("index.html", "", "has no module");
-    add_policy();
+    add_policy(text_, kSinglePagePolicy);
     // The scene stands at the end of the body: a browser shows the rest while it reads the scene.
     const std::size_t end = std::min(text_.rfind("</body>"), text_.size());
     const std::string tail = text_.substr(end);
@@ -168,14 +169,6 @@ class PageBuilder {
 
   static bool is_packed(const PageFile& file) { return file.path.ends_with(".gz"); }
 
-  /// Adds the policy behind <meta charset>; if there is none, behind <head>.
-  void add_policy() {
-    std::size_t at = text_.find("<meta charset");
-    at = text_.find('>', at == std::string::npos ? text_.find("<head") : at);
-    if (at == std::string::npos) throw Error("index.html", "", "has no <head>");
-    text_.insert(at + 1, "\n" + std::string(kPolicy));
-  }
-
   std::span<const PageFile> files_;
   std::string entry_;  // the path of the page's module
   std::string text_;
@@ -184,5 +177,18 @@ class PageBuilder {
 }  // namespace
 
 SinglePage make_single_page(std::span<const PageFile> files) { return PageBuilder(files).make(); }
+
+std::string make_template_page() {
+  const auto [before, after] = make_single_page(BakedPage({}).files());
+  return before + after;
+}
+
+void add_policy(std::string& html, std::string_view policy) {
+  std::size_t at = html.find("<meta charset");
+  at = html.find('>', at == std::string::npos ? html.find("<head") : at);
+  if (at == std::string::npos) throw Error("index.html", "", "has no <head>");
+  html.insert(at + 1, "\n<meta http-equiv=\"Content-Security-Policy\" content=\"" +
+                          std::string(policy) + "\">");
+}
 
 }  // namespace voxdag

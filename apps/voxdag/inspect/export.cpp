@@ -121,13 +121,15 @@ void export_file(ExportArguments& arguments, Session& session) {
   print_written(written, session);
 }
 
-void add_page_options(const Command& command, ExportArguments& arguments) {
+void add_page_options(const Command& command, ExportArguments& arguments, const Session& session) {
   std::vector<Option> options = add_reduction_options(command, arguments.page.reduction);
-  for (const Option& option : add_page_view_options(command, arguments.page_view))
-    options.push_back(option);
   options.push_back(command.flag("--poster", arguments.page_view.poster,
                                  "Render the first view, and show that picture until the page has "
                                  "loaded the scene: about 20 KB"));
+  for (const Option& option : options)
+    option.only_if([&session] { return !session.subject.empty(); }, "without FILE");
+  for (const Option& option : add_page_view_options(command, arguments.page_view))
+    options.push_back(option);
   for (const Option& option : options)
     option.in_group("Options for pages only (.html, FOLDER/)")
         .only_if([&arguments] { return arguments.is_page(); },
@@ -226,6 +228,7 @@ void add_export_command(const Command& program, Session& session) {
       "  voxdag export scene.vdag -o scene.html --view scene.settings.json --title Castle "
       "--poster\n"
       "  voxdag export scene.vdag -o site/\n"
+      "  voxdag export -o site/\n"
       "  voxdag export bunny.ply -r 256 -o bunny.vox\n\n"
       "An ESVO exports its voxels of the finest level. The outputs have the colours of the file, "
       "or of --look, as far as their formats can. Formats that cannot hold a place in the world "
@@ -233,12 +236,13 @@ void add_export_command(const Command& program, Session& session) {
       "A page shows the whole DAG with its colours and normals; --levels, --color-bound, "
       "--normal-bound and --drop-attributes make it smaller. The command prints its size, and "
       "warns if an .html file has more than 64 MiB: a browser reads such a file completely, but "
-      "reads only the levels that it shows from a folder.\n\n"
+      "reads only the levels that it shows from a folder. Without FILE, the page begins with a "
+      "place to drop one.\n\n"
       "A folder that exists is replaced as a whole, and only if it has no files but those of an "
       "older page. It stays if the export fails. `kill -9`, or a second Ctrl-C, can leave the "
       "unfinished folder OUT.voxdag-PID-N.");
   arguments->input.with_colors = true;
-  add_scene_input(command, arguments->input, session, "The .vdag or .esvo file");
+  add_scene_input(command, arguments->input, session, "The .vdag or .esvo file", false);
   command
       .text("-o,--output", arguments->output, "OUT",
             "Outer faces: .glb, .obj, .stl, .3mf, or .ply with --faces. Points: .ply. Voxels: .vox "
@@ -283,14 +287,18 @@ void add_export_command(const Command& program, Session& session) {
       .only_if(carries_look, kCarriesNone)
       .not_with(look);
   add_mesh_options(command, *arguments);
-  add_page_options(command, *arguments);
+  add_page_options(command, *arguments, session);
   add_json_option(command, session);
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
     session.inputs = {arguments->look};
     note_page_view_files(arguments->page_view, session);
     check_outputs(*arguments, session);
+    if (session.subject.empty() && !arguments->is_page())
+      throw UsageError("FILE", "is required, unless the output is a page");
     session.work = [arguments, &session] {
+      if (session.subject.empty())
+        return export_start_page(arguments->output, arguments->page_view, session);
       work_on_scene(arguments->input, session, [&] { export_file(*arguments, session); });
     };
   });

@@ -17,6 +17,13 @@ namespace fs = std::filesystem;
 
 bool is_single_file(const std::string& output) { return lower_case(output).ends_with(".html"); }
 
+std::uint64_t write_page(const std::string& output, const SceneBytes& scene, const PageView& view,
+                         Work work) {
+  const BakedPage page(view);
+  return is_single_file(output) ? export_single_page(output, scene, work, page.files())
+                                : export_site(output, scene, work, page.files());
+}
+
 }  // namespace
 
 bool is_page_output(const std::string& output) {
@@ -26,6 +33,7 @@ bool is_page_output(const std::string& output) {
 
 void check_page_output(const std::string& output, const Session& session) {
   check_distinct({{"--output", output}}, session);
+  if (session.subject.empty()) return;
   std::error_code unknown;
   const fs::path input = fs::weakly_canonical(session.subject, unknown);
   const fs::path folder = fs::weakly_canonical(output, unknown);
@@ -42,11 +50,7 @@ void export_page(const std::string& output, const ShownSceneArguments& arguments
   const ShownScene scene =
       ShownScene::read(session.subject, arguments, AttributeForm::kWire, session);
   if (shown.poster) view.poster = render_poster(view, scene, &session.progress);
-  const BakedPage page(view);
-  const std::uint64_t bytes =
-      is_single_file(output)
-          ? export_single_page(output, scene.bytes(), &session.progress, page.files())
-          : export_site(output, scene.bytes(), &session.progress, page.files());
+  const std::uint64_t bytes = write_page(output, scene.bytes(), view, &session.progress);
   print_written({{output},
                  {{"voxels", scene.voxels()}},
                  "the scene alone " + human_bytes(scene.bytes().size())},
@@ -57,6 +61,15 @@ void export_page(const std::string& output, const ShownSceneArguments& arguments
                      "export to a folder",
                      output, human_bytes(bytes))},
         session);
+}
+
+void export_start_page(const std::string& output, const PageViewArguments& shown,
+                       Session& session) {
+  PageView view = read_page_view(shown);
+  // The single file has an empty scene; a folder's page must not ask for one.
+  view.has_scene = is_single_file(output);
+  write_page(output, NoScene(), view, &session.progress);
+  print_written({{output}, {}, "a page that takes files"}, session);
 }
 
 }  // namespace voxdag::cli

@@ -19,4 +19,7 @@ void check_page_output(const std::string& output, const Session& session);
 void export_page(const std::string& output, const ShownSceneArguments& arguments,
                  const PageViewArguments& shown, Session& session);
 
+/// Writes the page without a scene: it begins with a place to drop files.
+void export_start_page(const std::string& output, const PageViewArguments& shown, Session& session);
+
 }  // namespace voxdag::cli

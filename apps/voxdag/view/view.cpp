@@ -26,15 +26,6 @@ struct ViewArguments {
   std::string output;  ///< The file that saving suggests; empty: beside the input.
 };
 
-/// The scene of a page that begins without one.
-class NoScene : public SceneBytes {
- public:
-  std::uint64_t size() const override { return 0; }
-  std::string tag() const override { return "none"; }
-  bool is_unchanged() const override { return true; }
-  bool read(std::uint64_t, std::span<std::byte>) const override { return false; }
-};
-
 /// Serves the page, and the template in which it saves scenes as pages.
 void serve_page(const SceneBytes& scene, const PageView& shown, const ViewArguments& arguments,
                 Session& session) {
@@ -42,9 +33,8 @@ void serve_page(const SceneBytes& scene, const PageView& shown, const ViewArgume
   std::vector<PageFile> files(page.files().begin(), page.files().end());
   std::string single;
   if (has_program(files)) {
-    const auto [before, after] = make_single_page(BakedPage({}).files());
-    single = before + after;
-    files.push_back({"voxdag.html", "text/html; charset=utf-8", single});
+    single = make_template_page();
+    files.push_back({kTemplateName, "text/html; charset=utf-8", single});
   }
   serve_scene(scene, files, arguments.serve, session);
 }

@@ -12,7 +12,7 @@
 #include "support/with_threads.hpp"
 
 // The test of the order that ThreadSanitizer sees holds for TBB: the pool is built with it.
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
 #include <tbb/task_arena.h>
 #endif
 
@@ -27,7 +27,7 @@ TEST(ParallelFor, CallsTheBodyOnceForEachItem) {
   }
 }
 
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
 
 void sleep_briefly() { std::this_thread::sleep_for(std::chrono::milliseconds(10)); }
 

@@ -12,7 +12,7 @@
 #include "voxdag/core/parallel/per_thread.hpp"
 #include "voxdag/core/parallel/thread_count.hpp"
 
-#ifndef VOXDAG_TBB
+#ifdef VOXDAG_OWN_THREADS
 
 namespace voxdag {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
-/// Memory in whole pages of the system. core/io/linux maps them; core/io/browser takes them from
-/// the heap, where nothing can be mapped.
+/// Memory in whole pages of the system. core/io/linux maps the pages; a browser cannot map any, so
+/// core/io/browser allocates them.
 #include <cstddef>
 
 namespace voxdag {

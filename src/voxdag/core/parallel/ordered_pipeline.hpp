@@ -7,7 +7,7 @@
 
 #include "voxdag/core/parallel/work.hpp"
 
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
 #include <tbb/parallel_pipeline.h>
 
 #include "voxdag/core/parallel/loop_order.hpp"
@@ -25,7 +25,7 @@ namespace voxdag {
 /// the order of i and never twice at the same time. At most `most_waiting` results exist at a time.
 /// If `make` or `use` throws, the results that wait are destroyed and the exception leaves. Throws
 /// Cancelled.
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
 
 // This function owns the results itself: tbb::parallel_pipeline leaks its tokens if a filter
 // throws.

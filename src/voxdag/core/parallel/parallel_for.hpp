@@ -2,7 +2,7 @@
 /// Parallel loops. The body is per item, so `return` ends one item.
 #include <cstddef>
 
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -13,7 +13,7 @@
 
 namespace voxdag {
 
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
 
 /// Calls body(i) for every i in [0, count), in any order, on several threads (thread_count.hpp).
 /// `grain` is the smallest number of items of a task.

@@ -1,6 +1,6 @@
 #pragma once
 /// A value of its own for each thread that works on a loop.
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
 #include <tbb/enumerable_thread_specific.h>
 #else
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace voxdag {
 
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
 
 /// local() returns the value of the calling thread, which a function given to the constructor makes
 /// when the thread asks first; by default T(). After the loop, begin() and end() list all values,

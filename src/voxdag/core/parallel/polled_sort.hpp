@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
 #include <tbb/parallel_sort.h>
 #endif
 
@@ -13,7 +13,7 @@
 
 namespace voxdag {
 
-#ifndef VOXDAG_TBB
+#ifdef VOXDAG_OWN_THREADS
 
 /// Sorts [begin, end): divides it at its median until there is a part for each thread.
 template <class Iterator, class Less>
@@ -42,7 +42,7 @@ void polled_sort(Iterator begin, Iterator end, Work work, const Less& less = {})
   };
 #ifdef VOXDAG_TSAN
   std::sort(begin, end, polled_less);
-#elif !defined(VOXDAG_TBB)
+#elif defined(VOXDAG_OWN_THREADS)
   sort_parts(begin, end, thread_count(), polled_less);
 #else
   tbb::parallel_sort(begin, end, polled_less);

@@ -2,7 +2,7 @@
 /// How many threads work on a loop.
 #include <algorithm>
 #include <cstddef>
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #else
@@ -11,7 +11,7 @@
 
 namespace voxdag {
 
-#ifdef VOXDAG_TBB
+#ifndef VOXDAG_OWN_THREADS
 
 /// Returns how many threads work on a loop of the calling thread at once, at least 1.
 inline std::size_t thread_count() {
