@@ -3,8 +3,8 @@
 #
 #   scripts/test.sh             formatting, the build under g++, the tests of what a change can break
 #   scripts/test.sh --debug     also a Debug build of the library, with the tests of what writes files
-#   scripts/test.sh --extended  also --debug, the library under clang, voxdag-lab, OpenVDB, CUDA's code on
-#                               the host, browsers, programs of others, jobs that are killed
+#   scripts/test.sh --extended  also --debug, the library under clang and for browsers, voxdag-lab, OpenVDB,
+#                               CUDA's code on the host, browsers, programs of others, jobs that are killed
 #   scripts/test.sh --tidy      also builds each source by itself under clang, runs clang-tidy and looks
 #                               for types that are defined twice
 set -euo pipefail
@@ -53,6 +53,13 @@ find . -name '*.[ch]pp' -not -path './build*' -print0 |
 options=(-DVOXDAG_EXTENDED_TESTS=OFF -DVOXDAG_BUILD_LAB=OFF -DVOXDAG_CUDA=OFF -DCMAKE_DISABLE_FIND_PACKAGE_OpenVDB=ON)
 [ "$extended" = no ] ||
   options=(-DVOXDAG_EXTENDED_TESTS=ON -DVOXDAG_BUILD_LAB=ON -DVOXDAG_CUDA=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenVDB=OFF)
+if [ "$extended" = yes ]; then
+  echo "== the program for browsers"
+  install_packages "${voxdag_wasm_packages[@]}"
+  cmake --preset wasm -DVOXDAG_BUILD_TESTS=ON >/dev/null
+  cmake --build build/wasm --target voxdag_wasm wasm_tests -- -j "$jobs"
+  options+=(-DVOXDAG_BROWSER_MODULE="$PWD/build/wasm/apps/wasm")
+fi
 echo "== g++"
 cmake --preset release -DVOXDAG_WERROR=ON -DVOXDAG_PYTHON=ON "${options[@]}" >/dev/null
 if [ "$extended" = yes ]; then
@@ -106,6 +113,7 @@ fi
 echo "== tests"
 if [ "$extended" = yes ]; then
   run_tests release
+  ctest --test-dir build/wasm --output-on-failure --no-tests=error
 else
   run_tests release -LE extended
 fi

@@ -16,7 +16,7 @@ struct Editing {
       : memory(command_budget(0)),
         file(path, &memory),
         session(
-            {file.view(), file.attributes()}, file.grid(), path,
+            {file.view(), file.attributes()}, file.grid(), "/out/scene.vdag",
             [this](const EditSnapshot& version, const std::filesystem::path& to) {
               save_edited(version, file.metadata(), to, file.is_compact(), &memory);
             },
@@ -57,8 +57,7 @@ std::string answer(const std::string& verb, std::uint32_t writer, const std::str
 extern "C" {
 
 /// Answers a request of the page (edit/client.js): a status of HTTP. The answer, or the reason, is
-/// then in voxdag_result(). `begin` opens the scene at the path `body`; `save` writes into its
-/// folder.
+/// then in voxdag_result(). `begin` opens the scene at the path `body`; `save` writes into /out.
 int voxdag_edit(const char* verb, unsigned writer, const char* body) {
   using namespace voxdag;
   try {

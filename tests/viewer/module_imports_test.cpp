@@ -20,13 +20,17 @@ TEST(ModuleImports, EveryFormIsFound) {
   EXPECT_EQ(paths("a/b/c.js", "export * from '../d.js'; export {e as f} from'../../e.js'"),
             (Paths{"a/d.js", "e.js"}));
   EXPECT_EQ(paths("app.js", "import * as a from './a.js'"), Paths{"a.js"});
+  EXPECT_EQ(paths("app.js", "const a = b ? await import('./a.js') : 0"), Paths{"a.js"});
+  EXPECT_TRUE(module_imports("app.js", "await import( './a.js')").at(0).is_awaited);
+  EXPECT_FALSE(module_imports("app.js", "import './a.js'").at(0).is_awaited);
 }
 
 TEST(ModuleImports, OtherTextsAreNone) {
   for (const char* source :
        {"const a = './b.js';", "load('../b.js')", "/** @type {import('../b.js').B} */",
-        "a.from './b.js'", "xfrom './b.js'", "import {a} from 'b';", "import a from '/b.js'",
-        "new URL('../', import.meta.url)", "from '"})
+        "a.from './b.js'", "xfrom './b.js'", "import('./b.js')", "xawait import('./b.js')",
+        "import {a} from 'b';", "import a from '/b.js'", "new URL('../', import.meta.url)",
+        "from '"})
     EXPECT_EQ(paths("app.js", source), Paths{}) << source;
 }
 

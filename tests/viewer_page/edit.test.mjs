@@ -4,6 +4,7 @@ import { test } from 'node:test';
 
 import { Stroke, lineOf } from '../../apps/viewer/page/edit/brush.js';
 import { EditClient } from '../../apps/viewer/page/edit/client.js';
+import { serverEditor } from '../../apps/viewer/page/edit/editors.js';
 import { floorHit } from '../../apps/viewer/page/edit/floor.js';
 import { applyUpdate, parseUpdate, withRuns } from '../../apps/viewer/page/edit/update.js';
 import { overlayAt } from '../../apps/viewer/page/materials.js';
@@ -123,7 +124,7 @@ test('requests follow each other; what is drawn meanwhile goes in one; a failure
   const turn = () => new Promise((resolve) => setTimeout(resolve, 5));
   /** @type {string[]} */
   const told = [];
-  const client = new EditClient('secret', () => told.push('taken'), (error) => told.push(error.message));
+  const client = new EditClient(serverEditor('secret'), () => told.push('taken'), (error) => told.push(error.message));
   client.draw('a', true);
   client.draw('b', false);
   client.draw('c', false);

@@ -53,7 +53,7 @@ BakedPage::BakedPage(const PageView& view)
   if (!view.has_scene)
     replace(index_, kEnd,
             std::string(kEnd) + "\n<script type=\"text/plain\" id=\"scene\"></script>");
-  if (!view.edits)
+  if (!view.edits && !has_program(files_))
     std::erase_if(files_, [](const PageFile& file) { return file.path.starts_with("edit/"); });
   for (PageFile& file : files_)
     if (file.path == "index.html") file.bytes = index_;

@@ -10,13 +10,18 @@ bool is_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '$';
 }
 
-/// Returns whether the text ends with `word` and spaces.
-bool ends_with_word(std::string_view text, std::string_view word) {
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0)
-    text.remove_suffix(1);
-  if (!text.ends_with(word)) return false;
-  text.remove_suffix(word.size());
-  return text.empty() || (!is_word(text.back()) && text.back() != '.');
+/// Removes `word` and the spaces behind it from the end of the text. Returns false, and changes
+/// nothing, if the text does not end so.
+bool take_word(std::string_view& text, std::string_view word) {
+  std::string_view rest = text;
+  while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.back())) != 0)
+    rest.remove_suffix(1);
+  if (!rest.ends_with(word)) return false;
+  rest.remove_suffix(word.size());
+  if (!rest.empty() && is_word(word.front()) && (is_word(rest.back()) || rest.back() == '.'))
+    return false;
+  text = rest;
+  return true;
 }
 
 }  // namespace
@@ -28,14 +33,19 @@ std::vector<ModuleImport> module_imports(std::string_view path, std::string_view
        quote = source.find_first_of("'\"", quote + 1)) {
     const std::string_view rest = source.substr(quote + 1);
     if (!rest.starts_with("./") && !rest.starts_with("../")) continue;
-    const std::string_view before = source.substr(0, quote);
-    if (!ends_with_word(before, "from") && !ends_with_word(before, "import")) continue;
+    std::string_view before = source.substr(0, quote);
+    // Comments name types by import('...'), without `await`.
+    const bool is_awaited = take_word(before, "(");
+    if (is_awaited ? !take_word(before, "import") || !take_word(before, "await")
+                   : !take_word(before, "from") && !take_word(before, "import"))
+      continue;
     const std::size_t end = source.find(source[quote], quote + 1);
     if (end == source.npos) break;
     const std::string_view specifier = source.substr(quote + 1, end - quote - 1);
     imports.push_back(
         {quote + 1, end,
-         (fs::path(path).parent_path() / specifier).lexically_normal().generic_string()});
+         (fs::path(path).parent_path() / specifier).lexically_normal().generic_string(),
+         is_awaited});
     quote = end;
   }
   return imports;

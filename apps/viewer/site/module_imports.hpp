@@ -1,15 +1,16 @@
 #pragma once
-/// The static imports of the page's modules.
+/// The imports of the page's modules.
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace voxdag {
 
-/// The path in quotation marks of an `import` or an `export ... from`.
+/// The path in quotation marks of an `import`, an `export ... from` or an `await import(...)`.
 struct ModuleImport {
   std::size_t begin, end;  ///< The path's place in the source, without quotation marks.
   std::string path;        ///< From the page's folder: "math.js" for '../math.js' in "gpu/a.js".
+  bool is_awaited;         ///< `await import(...)`: the page may lack the file.
 };
 
 /// Returns the relative imports of the module `path`, in the order of the source. Paths that lead

@@ -17,13 +17,17 @@ constexpr std::string_view kSinglePagePolicy =
     "style-src 'unsafe-inline'; img-src data: blob:; font-src data:; worker-src blob:; "
     "connect-src data: blob:; base-uri 'none'; form-action 'none'";
 
-const PageFile& file_at(std::span<const PageFile> files, std::string_view path,
-                        std::string_view user) {
+/// Returns the file with this path, or null.
+const PageFile* find_file(std::span<const PageFile> files, std::string_view path) {
   const auto found = std::find_if(files.begin(), files.end(),
                                   [&](const PageFile& file) { return file.path == path; });
-  if (found == files.end())
-    throw Error(std::string(user), "", "refers to " + std::string(path) + ", which the page lacks");
-  return *found;
+  return found == files.end() ? nullptr : &*found;
+}
+
+const PageFile& file_at(std::span<const PageFile> files, std::string_view path,
+                        std::string_view user) {
+  if (const PageFile* const file = find_file(files, path)) return *file;
+  throw Error(std::string(user), "", "refers to " + std::string(path) + ", which the page lacks");
 }
 
 std::string data_url(const PageFile& file, std::string_view bytes) {
@@ -39,6 +43,7 @@ std::set<std::string> reachable_modules(std::span<const PageFile> files, const s
     const std::string path = left.back();
     left.pop_back();
     for (const ModuleImport& import : module_imports(path, file_at(files, path, path).bytes)) {
+      if (import.is_awaited && find_file(files, import.path) == nullptr) continue;
       file_at(files, import.path, path);
       if (paths.insert(import.path).second) left.push_back(import.path);
     }

@@ -1,5 +1,6 @@
 /** The page's program: a viewer of the scene beside the page, with hands and interface. */
 import { bakedSettings } from '../baked_settings.js';
+import { hasProgram } from '../build/program.js';
 import { hasNoScene } from '../file/byte_source.js';
 import { Hands } from '../hands/hands.js';
 import { settingsFromHash } from '../settings_link.js';
@@ -19,10 +20,10 @@ try {
   const query = new URLSearchParams(location.search), url = query.get('url'), empty = url !== null || hasNoScene();
   const viewer = createViewer({ container: picture, settings, empty });
   const hands = new Hands(viewer);
-  // `voxdag view --edit` prints an address with a secret, and sends edit/.
-  const secret = query.get('edit');
-  const edits = secret === null ? null : await import('../edit/editing.js').catch(() => null);
-  const ui = createInterface(viewer, hands, container, base, edits && ((ui) => edits.makeEditing(ui, secret ?? '')));
+  // `voxdag view --edit` prints an address with a secret, and sends edit/. The program can edit, too.
+  const secret = query.get('edit'), edits = secret !== null || hasProgram() ? await import('../edit/editing.js').catch(() => null) : null;
+  if (secret !== null && edits === null) problems.push('this page cannot edit: use the address that `voxdag view --edit` prints');
+  const ui = createInterface(viewer, hands, container, base, edits && ((ui) => edits.makeEditing(ui, secret)));
   keepLink(ui, base);
   for (const problem of problems) console.warn(problem);
   if (problems.length) ui.toast(capitalized(problems[0]), true);

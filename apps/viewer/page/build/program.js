@@ -30,35 +30,76 @@ function load() {
   return loading;
 }
 
+/** An instance of the program in a worker of its own, with files that it sees in /in. */
+export class Program {
+  /** @param {Worker} worker @param {Job} job */
+  constructor(worker, { onProgress, signal }) {
+    this.worker = worker;
+    this.watch = new AbortController();
+    /** Takes the answer to what was sent. @type {{resolve: (answer: any) => void, reject: (error: Error) => void} | null} */
+    this.waiter = null;
+    /** Ends when the last answer has come. @type {Promise<any>} */
+    this.last = Promise.resolve();
+    /** Why it has ended. @type {Error | null} */
+    this.end = null;
+    const died = () => this.close('the browser has ended the work, perhaps because memory was short');
+    signal?.addEventListener('abort', () => this.close('cancelled'), { signal: this.watch.signal });
+    worker.onerror = died;
+    worker.onmessage = ({ data }) => {
+      if (data.type === 'progress') onProgress?.(data.part);
+      else if (data.type === 'lock') watchLock(data.name, this.watch.signal, died);
+      else if (data.type === 'failed') this.close(data.text);
+      else this.waiter?.resolve(data);
+    };
+  }
+
+  /** Starts one. Throws Error, also if `signal` has ended the job. @param {InputFile[]} files @param {Job} [job] */
+  static async start(files, job = {}) {
+    const { script, module } = await load();
+    job.signal?.throwIfAborted();
+    const program = new Program(new Worker(script), job);
+    program.worker.postMessage({ module, files });
+    return program;
+  }
+
+  /** Sends work, after the answers to what was sent before. Throws Error if the program ends first. @param {{args: string[]} | {verb: string, writer: number, body: string}} message @returns {Promise<any>} */
+  send(message) {
+    const answer = this.last.then(() => new Promise((resolve, reject) => {
+      if (this.end) return reject(this.end);
+      this.waiter = { resolve, reject };
+      this.worker.postMessage(message);
+    }));
+    this.last = answer.catch(() => undefined);
+    return answer;
+  }
+
+  /** Ends the worker, and gives its memory back. @param {string} [why] */
+  close(why = 'the program was closed') {
+    this.end ??= new Error(why);
+    this.watch.abort();
+    this.worker.terminate();
+    this.waiter?.reject(this.end);
+  }
+}
+
 /**
- * Runs the program, and returns what it has left if its exit status is 0.
+ * Runs the command line, and returns what it has left if its exit status is 0.
  * Throws Error with one line: what the program says, that its worker has ended, or that there is too little memory.
  * @param {string[]} args @param {InputFile[]} files @param {Job} [job]  `signal` ends the run. @returns {Promise<Result>}
  */
-export async function run(args, files, { onProgress, signal } = {}) {
-  const { script, module } = await load();
-  signal?.throwIfAborted();
-  const worker = new Worker(script), watch = new AbortController();
+export async function run(args, files, job) {
+  const program = await Program.start(files, job);
   try {
-    const result = await new Promise((resolve, reject) => {
-      const died = () => reject(new Error('the browser has ended the work, perhaps because memory was short'));
-      signal?.addEventListener('abort', () => reject(new Error('cancelled')), { signal: watch.signal });
-      worker.onerror = died;
-      worker.onmessage = ({ data }) => {
-        if (data.type === 'progress') onProgress?.(data.part);
-        else if (data.type === 'lock') watchLock(data.name, watch.signal, died);
-        else if (data.type === 'failed') reject(new Error(data.text));
-        else resolve(data);
-      };
-      worker.postMessage({ module, args, files });
-    });
+    const result = await program.send({ args });
     if (result.status !== 0) throw new Error(errorLine(result.lines) ?? `the program ended with status ${result.status}`);
-    return { ...result, files: result.files.map((/** @type {{name: string, bytes: BlobPart}} */ { name, bytes }) => new File([bytes], name)) };
+    return { ...result, files: asFiles(result.files) };
   } finally {
-    watch.abort();
-    worker.terminate();
+    program.close();
   }
 }
+
+/** @param {{name: string, bytes: BlobPart}[]} files */
+export const asFiles = (files) => files.map(({ name, bytes }) => new File([bytes], name));
 
 /** Calls `died` when the worker that holds a lock ends: a browser that ends a worker tells nobody. @param {string} name @param {AbortSignal} signal @param {() => void} died */
 function watchLock(name, signal, died) {

@@ -1,10 +1,21 @@
-/** The worker of one run: see program.js. It stands behind voxdag.js in the worker's script. */
+/**
+ * The worker of a program: see program.js. It stands behind voxdag.js in the worker's script. The first message brings the compiled
+ * module and files; each of the others is a command line, or a request of the editor (apps/wasm/edit.cpp).
+ */
 
-self.onmessage = async ({ data: { module, args, files } }) => {
-  const send = (/** @type {any} */ message, /** @type {Transferable[]} */ transfer = []) => /** @type {any} */ (self).postMessage(message, transfer);
-  // The page waits for this lock, so it learns when the browser ends the worker.
+/** @typedef {{FS: any, callMain: (args: string[]) => number, ccall: (name: string, returns: string, types: string[], values: any[]) => number}} Voxdag */
+
+/** @param {any} message @param {Transferable[]} [transfer] */
+const send = (message, transfer = []) => /** @type {any} */ (self).postMessage(message, transfer);
+/** @type {string[]} */
+const out = [], lines = [];
+/** @type {WebAssembly.Memory | undefined} */
+let memory;
+
+/** Holds a lock for which the page waits, so that it learns when the browser ends the worker. */
+function holdLock() {
   const name = `voxdag-${Math.random()}`;
-  await new Promise((resolve) => {
+  return new Promise((resolve) => {
     const hold = () => {
       send({ type: 'lock', name });
       resolve(undefined);
@@ -14,28 +25,57 @@ self.onmessage = async ({ data: { module, args, files } }) => {
     if (navigator.locks) navigator.locks.request(name, hold).catch(resolve);
     else resolve(undefined);
   });
-  const out = /** @type {string[]} */ ([]), lines = /** @type {string[]} */ ([]);
-  /** @type {WebAssembly.Memory | undefined} */
-  let memory;
+}
+
+/** @param {WebAssembly.Module} module @param {{name: string, data: Blob}[]} files @returns {Promise<Voxdag>} */
+async function start(module, files) {
+  await holdLock();
+  const program = await /** @type {any} */ (self).voxdagModule({
+    print: (/** @type {string} */ line) => out.push(line), printErr: (/** @type {string} */ line) => lines.push(line),
+    onProgress: (/** @type {string} */ stage, /** @type {number} */ part) => send({ type: 'progress', part }),
+    instantiateWasm(/** @type {WebAssembly.Imports} */ imports, /** @type {(instance: WebAssembly.Instance, module: WebAssembly.Module) => void} */ take) {
+      WebAssembly.instantiate(module, imports).then((instance) => {
+        memory = Object.values(instance.exports).find((value) => value instanceof WebAssembly.Memory);
+        take(instance, module);
+      }, (error) => send({ type: 'failed', text: `the program cannot start: ${error.message}` }));
+      return {};
+    },
+  });
+  program.FS.mkdir('/in');
+  program.FS.mkdir('/out');
+  if (files.length > 0) program.FS.mount(program.FS.filesystems.WORKERFS, { blobs: files }, '/in');
+  return program;
+}
+
+/** Takes the files that the program has written. @param {any} FS */
+function takeFiles(FS) {
+  const names = FS.readdir('/out').filter((/** @type {string} */ file) => FS.isFile(FS.stat(`/out/${file}`).mode));
+  return names.map((/** @type {string} */ name) => {
+    const bytes = FS.readFile(`/out/${name}`);
+    FS.unlink(`/out/${name}`);
+    return { name, bytes };
+  });
+}
+
+/** @param {Voxdag} program @param {any} message */
+function answer({ FS, callMain, ccall }, { args, verb, writer, body }) {
+  if (args) return { status: callMain(args), out: out.join('\n'), lines, files: takeFiles(FS), bytes: memory?.buffer.byteLength ?? 0 };
+  const status = ccall('voxdag_edit', 'number', ['string', 'number', 'string'], [verb, writer, body]);
+  const at = ccall('voxdag_result', 'number', [], []) >>> 0, size = ccall('voxdag_result_bytes', 'number', [], []) >>> 0;
+  return { status, answer: new Uint8Array(/** @type {WebAssembly.Memory} */ (memory).buffer, at, size).slice(), files: takeFiles(FS) };
+}
+
+/** @type {Promise<Voxdag> | undefined} */
+let program;
+self.onmessage = async ({ data }) => {
   try {
-    const { FS, callMain } = await /** @type {any} */ (self).voxdagModule({
-      print: (/** @type {string} */ line) => out.push(line), printErr: (/** @type {string} */ line) => lines.push(line),
-      onProgress: (/** @type {string} */ stage, /** @type {number} */ part) => send({ type: 'progress', part }),
-      instantiateWasm(/** @type {WebAssembly.Imports} */ imports, /** @type {(instance: WebAssembly.Instance, module: WebAssembly.Module) => void} */ take) {
-        WebAssembly.instantiate(/** @type {WebAssembly.Module} */ (module), imports).then((instance) => {
-          memory = Object.values(instance.exports).find((value) => value instanceof WebAssembly.Memory);
-          take(instance, module);
-        }, (error) => send({ type: 'failed', text: `the program cannot start: ${error.message}` }));
-        return {};
-      },
-    });
-    FS.mkdir('/in');
-    FS.mkdir('/out');
-    if (files.length > 0) FS.mount(FS.filesystems.WORKERFS, { blobs: files }, '/in');
-    const status = callMain(args), bytes = memory?.buffer.byteLength ?? 0;
-    const written = FS.readdir('/out').filter((/** @type {string} */ file) => FS.isFile(FS.stat(`/out/${file}`).mode))
-      .map((/** @type {string} */ file) => ({ name: file, bytes: FS.readFile(`/out/${file}`) }));
-    send({ type: 'done', status, out: out.join('\n'), lines, files: written, bytes }, written.map((/** @type {{bytes: Uint8Array}} */ file) => file.bytes.buffer));
+    if (data.module) {
+      program = start(data.module, data.files);
+      await program;
+      return;
+    }
+    const result = answer(/** @type {Voxdag} */ (await program), data);
+    send({ type: 'done', ...result }, result.files.map((/** @type {{bytes: Uint8Array}} */ file) => file.bytes.buffer));
   } catch (error) {
     const text = String(/** @type {any} */ (error)?.message ?? error);
     send({ type: 'failed', text: /memory|OOM|alloc/i.test(text) || error instanceof RangeError ? 'it needs more memory than the browser gives' : `the program has failed: ${text}` });

@@ -1,8 +1,12 @@
-/** Sends edits to the server, one request after the other: see apps/viewer/server/edit_answers.hpp. */
+/** Sends edits, one request after the other: to the server, or to the program in this page. */
 import { parseUpdate } from './update.js';
 
 /** @typedef {import('./update.js').Update} Update */
 /** @typedef {{path: string, lines: string[], more: boolean}} Job  Lines of a script, if it is a stroke. */
+/**
+ * Who makes the edits. `ask` answers a request of apps/viewer/server/edit_answers.hpp with a status of HTTP; it throws Error if no answer comes.
+ * @typedef {{ask: (path: string, body: string, writer: number) => Promise<Response>}} Editor
+ */
 
 /** Lines of a request, at most: the server takes 64 KB. */
 const MOST_LINES = 300;
@@ -18,11 +22,11 @@ export class Refused extends Error {
 
 export class EditClient {
   /**
-   * @param {string} secret @param {(update: Update, goesOn: boolean) => void} take  Takes what an edit has changed; `goesOn`: its stroke does.
+   * @param {Editor} editor @param {(update: Update, goesOn: boolean) => void} take  Takes what an edit has changed; `goesOn`: its stroke does.
    * @param {(error: Error) => void} fail  Edits that wait are dropped.
    */
-  constructor(secret, take, fail) {
-    this.secret = secret;
+  constructor(editor, take, fail) {
+    this.editor = editor;
     this.take = take;
     this.fail = fail;
     this.writer = 0;
@@ -35,14 +39,9 @@ export class EditClient {
 
   /** @param {string} path @param {string} [body] @returns {Promise<Response>} */
   async ask(path, body = '') {
-    const headers = { 'Voxdag-Token': this.secret, 'Voxdag-Writer': String(this.writer) };
-    /** @type {Response} */
-    let response;
-    try {
-      response = await fetch(new URL(`edit/${path}`, document.baseURI), { method: 'POST', headers, body });
-    } catch {
-      throw new Refused('The server cannot be reached', 0);
-    }
+    const response = await this.editor.ask(path, body, this.writer).catch((error) => {
+      throw new Refused(error.message, 0);
+    });
     if (!response.ok) throw new Refused((await response.text()).trim() || `The server answers ${response.status}`, response.status);
     return response;
   }
@@ -66,7 +65,7 @@ export class EditClient {
     this.#add({ path: 'redo', lines: [], more: false });
   }
 
-  /** Returns the name that the server suggests. */
+  /** Returns the name that the editor suggests. */
   async fileName() {
     return (await (await this.ask('file')).text()).trim();
   }

@@ -1,4 +1,4 @@
-/** The panel "Edit": brushes on the picture, undo and redo, and files that are saved. Only `voxdag view --edit` sends it. */
+/** The panel "Edit": brushes on the picture, undo and redo, and files that are saved. */
 import { mostTexels } from '../gpu/long_texture.js';
 import { isTyping } from '../hands/keys.js';
 import { length, sub } from '../math.js';
@@ -9,6 +9,7 @@ import { materialName } from '../ui/materials_panel.js';
 import { lengthText } from '../ui/numbers.js';
 import { Stroke } from './brush.js';
 import { EditClient, Refused } from './client.js';
+import { PageEditor, serverEditor } from './editors.js';
 import { floorHit } from './floor.js';
 import { makePreview } from './preview.js';
 import { applyUpdate } from './update.js';
@@ -28,12 +29,15 @@ const HELP = ['Edit', [
   ['Ctrl Shift Z', 'redo it'],
 ]];
 
-/** Makes the panel and what belongs to it. @param {Ui} ui @param {string} secret  Of the page's address. @returns {import('../ui/interface.js').Extra} */
+/**
+ * Makes the panel and what belongs to it. The server edits its scene; without one, the program in the page edits whatever it shows.
+ * @param {Ui} ui @param {string | null} secret  Of the page's address, from `voxdag view --edit`. @returns {import('../ui/interface.js').Extra}
+ */
 export function makeEditing(ui, secret) {
-  const { viewer } = ui, voxel = () => viewer.info?.voxelSize ?? 1;
+  const { viewer } = ui, voxel = () => viewer.info?.voxelSize ?? 1, page = secret === null ? new PageEditor() : null;
   /** @type {Brush} */
   const brush = { verb: 'remove', shape: 'ball', radius: 0, color: '#d04a2b', material: null };
-  let undos = 0, redos = 0, root = 0, fileName = '', isOpen = false, why = 'The scene is loading…';
+  let undos = 0, redos = 0, root = 0, version = '', first = '', saved = '', fileName = '', isOpen = false, canBegin = false, why = 'The scene is loading…';
   /** Returns the brush as far as the scene has colours and materials. @returns {Brush} */
   const usable = () => ({ ...brush, color: viewer.info?.hasColors ? brush.color : null, material: viewer.info?.materials ? brush.material : null });
 
@@ -43,17 +47,20 @@ export function makeEditing(ui, secret) {
     ui.toast(error.message, true);
     ui.refresh();
   };
-  const client = new EditClient(secret, (update, goesOn) => {
+  const client = new EditClient(page ?? serverEditor(secret ?? ''), (update, goesOn) => {
     ({ undos, redos } = update);
     viewer.change((memory, textures) => applyUpdate(update, memory, textures, mostTexels(textures.gl)), goesOn);
     root = update.version.root;
+    version = Object.values(update.version).join();
+    if (!isOpen) first = saved = version;
     if (root === NO_NODE && !isOpen) brush.verb = 'add';
     isOpen = true;
     ui.refresh();
   }, fail);
   const stop = (/** @type {string} */ reason) => {
-    isOpen = false;
+    isOpen = canBegin = false;
     why = reason;
+    page?.close();
     tool.stop();
     ui.refresh();
   };
@@ -95,6 +102,13 @@ export function makeEditing(ui, secret) {
     },
     end: () => preview.at(null),
   });
+  /** Gives the scene to the program in the page. */
+  const begin = () => ui.job('Open for edits', async ({ signal }) => {
+    await page?.begin(await viewer.scene(), `${ui.name()}.vdag`, signal);
+    canBegin = false;
+    client.open();
+    tool.toggle();
+  });
   const undo = () => { if (isOpen && undos > 0) client.undo(); };
   const redo = () => { if (isOpen && redos > 0) client.redo(); };
   const resize = (/** @type {number} */ factor) => {
@@ -109,6 +123,7 @@ export function makeEditing(ui, secret) {
     for (const replaces of [false, true])
       try {
         const saved = await client.save(name, replaces);
+        saved = version;
         return ui.toast(`Saved ${saved}`);
       } catch (error) {
         if (!(error instanceof Refused) || error.status !== 412) return ui.toast(/** @type {Error} */ (error).message, true);
@@ -141,9 +156,9 @@ export function makeEditing(ui, secret) {
   const start = button('Brush', () => tool.toggle(), { icon: 'edit', primary: true, title: 'Drag over the surface (key T)', keys: 'T' });
   const back = button('Undo', undo, { icon: 'undo', title: 'Ctrl Z', keys: 'Control+Z' }), forth = button('Redo', redo, { icon: 'redo', title: 'Ctrl Shift Z', keys: 'Control+Shift+Z' });
   const file = textField({ label: 'File', most: 200, hint: 'In the folder of the scene', get: () => fileName, set: (name) => { fileName = name; } });
-  const saver = button('Save as', save, { icon: 'share' });
+  const saver = button('Save as', save, { icon: 'share' }), beginner = button('Edit this scene', begin, { icon: 'edit', primary: true });
   const body = h('div', {}, group('', verbs.element, shapes.element, radius.element, colorRow, materialPart, start),
-    group('', h('div', { class: 'buttons' }, back, forth)), group('', file.element, h('div', { class: 'buttons' }, saver)));
+    group('', h('div', { class: 'buttons' }, back, forth)), page ? '' : group('', file.element, h('div', { class: 'buttons' }, saver)));
 
   window.addEventListener('keydown', (event) => {
     if (isTyping(event) || event.altKey) return;
@@ -156,23 +171,42 @@ export function makeEditing(ui, secret) {
   });
   viewer.on('loaded', () => {
     const { info } = viewer;
-    if (viewer.file !== null || !info) return;
+    if ((!page && viewer.file !== null) || !info) return;
     if (viewer.statistics().levelsLoaded < info.levels && info.voxels > 0) return stop('The scene is too large for the graphics card to be edited.');
+    if (page) {
+      if (info.voxels === 0) return stop('The scene has no voxels.');
+      canBegin = true;
+      why = 'Brushes add, remove and paint voxels. Edits stay in this page until the scene is saved.';
+      return ui.refresh();
+    }
     client.open();
     client.fileName().then((name) => { fileName = name; ui.refresh(); }, fail);
   });
-  viewer.on('opened', () => stop('Only the scene of the server can be edited.'));
+  viewer.on('opened', () => stop(page ? 'The scene is loading…' : 'Only the scene of the server can be edited.'));
+  window.addEventListener('beforeunload', (event) => {
+    if (page && isOpen && version !== saved) event.preventDefault();
+  });
 
   return {
     help: HELP,
-    act: () => { if (isOpen) tool.toggle(); },
+    act: () => { if (isOpen) tool.toggle(); else if (canBegin) begin(); },
+    async scene() {
+      if (!isOpen || version === first) return null;
+      if (!page) throw new Error('the panel Edit saves scenes with edits');
+      const now = version;
+      await client.save('scene', true);
+      saved = now;
+      return page.saved;
+    },
     panel: {
-      element: h('div', {}, body, note),
+      element: h('div', {}, body, note, beginner),
       refresh(settings) {
         const { info } = viewer, most = MOST_RADIUS * diagonal();
         body.hidden = !isOpen;
+        beginner.hidden = !canBegin;
         say(note, !isOpen ? why : brush.verb === 'paint' && !info?.hasColors && !info?.materials ? 'The file has no colours: voxdag build --color stores them.'
-          : root === NO_NODE ? 'There are no voxels: Add draws on the floor of the grid.' : 'Edits stay with the server until they are saved. T ends the brush.');
+          : root === NO_NODE ? 'There are no voxels: Add draws on the floor of the grid.'
+            : page ? 'Edits stay in this page: Save and share saves them. T ends the brush.' : 'Edits stay with the server until they are saved. T ends the brush.');
         if (!isOpen || !info) return;
         brush.radius ||= Math.max(FIRST_RADIUS * diagonal(), voxel());
         radius.limits(Math.log2(voxel() / 2), Math.log2(most));

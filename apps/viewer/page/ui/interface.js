@@ -50,6 +50,7 @@ import { SIDES, viewPanel } from './view_panel.js';
  * @property {Panel} panel
  * @property {[string, [string, string][]]} help  Its keys: the title, and keys with what they do.
  * @property {() => void} act  What its key does.
+ * @property {() => Promise<Blob | null>} scene  The file of the scene with its edits; null: it has none.
  *
  * @typedef {object} Ui  Parts of the interface that panels may use.
  * @property {Viewer} viewer
@@ -65,6 +66,7 @@ import { SIDES, viewPanel } from './view_panel.js';
  * @property {() => void} refresh
  * @property {() => void} reset
  * @property {() => Camera} home
+ * @property {() => Promise<Blob>} scene  The file of the scene, with edits.
  * @property {() => string} name  Of the scene, for files.
  * @property {() => string} hash
  * @property {(line: string) => HTMLElement} command  A line for a terminal, to copy.
@@ -127,6 +129,7 @@ export function createInterface(viewer, hands, container, base = DEFAULTS, editi
       ui.toast('Settings reset; measures, notes and the camera path stay');
     },
     home: () => viewer.info?.view ?? viewer.camera(),
+    scene: async () => (await edit?.scene()) ?? viewer.scene(),
     name: () => (viewer.info?.name ?? 'scene').replace(/^.*\//, '').replace(/\.\w+$/, '').replace(/[^\w.-]+/g, '_') || 'scene',
     command(line) {
       const act = async () => ui.toast((await copy(line)) ? 'Command copied' : 'The browser did not allow copying');

@@ -1,6 +1,7 @@
 /** Opens files that a person chooses, drops or pastes: scenes, pages with scenes, settings, camera paths, and models to build. */
 import { chosenFiles, filesOf, unpacked } from '../build/gather_files.js';
 import { kindOf, mainFile } from '../build/input_kinds.js';
+import { hasProgram, run } from '../build/program.js';
 import { SettingsError, mergeSettings, settingsFromJson } from '../settings.js';
 import { button } from './controls.js';
 import { h } from './dom.js';
@@ -33,9 +34,22 @@ export async function openFiles(ui, given) {
 async function openOne(ui, { name, data }) {
   const start = await data.slice(0, 64).text();
   if (/^\uFEFF?\s*[[{]/.test(start) || /\.json$/i.test(name)) return openSettings(ui, name, data);
-  await ui.viewer.open(new File([data], name));
+  const file = new File([data], name);
+  try {
+    await ui.viewer.open(file);
+  } catch (error) {
+    if (!/has the compact form/.test(/** @type {Error} */ (error).message) || !hasProgram()) throw error;
+    if (!(await openCompact(ui, file))) return;
+  }
   ui.toast(`Opened ${name}`);
 }
+
+/** Opens a scene in the compact form: the program decodes it. @param {Ui} ui @param {File} file */
+const openCompact = (ui, file) => ui.job('Decode the scene', async ({ signal, progress }) => {
+  const args = ['convert', '/in/compact.vdag', '--plain', '-o', `/out/${file.name.replace(/^.*\//, '')}`, '-q'];
+  const { files } = await run(args, [{ name: 'compact.vdag', data: file }], { signal, onProgress: progress });
+  await ui.viewer.open(files[0]);
+});
 
 /** Loads settings or a camera path. @param {Ui} ui @param {string} name @param {Blob} file */
 async function openSettings(ui, name, file) {

@@ -10,7 +10,7 @@ import { download, h } from './dom.js';
 export function saveScene(ui) {
   const { viewer } = ui;
   const save = (/** @type {string} */ extension) => ui.job('Save', async ({ signal, progress }) => {
-    const scene = await viewer.scene(), name = ui.name(), file = `${name}.${extension}`;
+    const scene = await ui.scene(), name = ui.name(), file = `${name}.${extension}`;
     if (extension === 'vdag') return download(file, scene);
     if (extension === 'html') return download(file, await pageWith(scene, document.title, settingsToJson({ ...viewer.get(), camera: viewer.camera() })));
     const { files } = await run(['export', `/in/${name}.vdag`, '-o', `/out/${file}`, '--json'], [{ name: `${name}.vdag`, data: scene }], { signal, onProgress: progress });
