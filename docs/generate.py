@@ -4,6 +4,7 @@
     docs/generate.py cli VOXDAG    cli.md and cli/: from the help texts of the program VOXDAG
     docs/generate.py api           the list of headers in api.md: from cmake/public_headers.txt
     docs/generate.py house         images/house.svg, the picture in design.md: from src/voxdag/rooms.txt
+    docs/generate.py man VOXDAG    the man page, on standard output: from the help texts of the program VOXDAG
 
 With --check it writes nothing, and fails if a page differs from what it would write.
 """
@@ -207,6 +208,43 @@ def cli_pages(program):
     return pages
 
 
+def roff(text):
+    """Returns the text for a man page."""
+    text = text.replace("\\", "\\e").replace("-", "\\-").replace("`", "")
+    return "\\&" + text if text.startswith((".", "'")) else text
+
+
+def man_section(program, words, heading):
+    """Returns the part of the man page about a command and its subcommands."""
+    text = Help(program, words)
+    lines = [f".{heading} {' '.join(words)}", roff(text.purpose + ".")]
+    for note_text in text.notes:
+        lines += [".PP", roff(note_text)]
+    if text.examples:
+        lines += [".PP", ".nf", ".RS", *map(roff, text.examples), ".RE", ".fi"]
+    for _, rows in text.options():
+        for name, meaning in rows:
+            lines += [".TP", f".B {roff(name)}", roff(meaning)]
+    for _, rows in text.commands():
+        if words != ["bench"]:
+            lines += [line for name, _ in rows for line in man_section(program, [*words, name], heading)]
+    return lines
+
+
+def man_page(program):
+    """Returns the man page, in roff."""
+    root = Help(program, [])
+    version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.split("\n")[0]
+    lines = [f'.TH VOXDAG 1 "" "{version}" "User Commands"', ".SH NAME", f"voxdag \\- {roff(root.purpose)}",
+             ".SH SYNOPSIS", ".B voxdag", "COMMAND [ARGUMENT...]", ".SH COMMANDS"]
+    for _, rows in root.commands():
+        for name, _ in rows:
+            if name != "bench":  # Another program has the benchmarks.
+                lines += man_section(program, [name], "SS")
+    lines += [".SH NOTES", *(line for text in root.notes for line in (roff(text), ".PP"))]
+    return "\n".join(lines) + "\n"
+
+
 MARK = "<!-- docs/generate.py writes the list below from cmake/public_headers.txt. -->\n"
 
 
@@ -301,13 +339,16 @@ def house_picture():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("cli", "api", "house"))
+    parser.add_argument("what", choices=("cli", "api", "house", "man"))
     parser.add_argument("program", nargs="?", help="the program whose help texts are read")
     parser.add_argument("--check", action="store_true", help="write nothing; fail if a page differs")
     arguments = parser.parse_args()
+    if arguments.what in ("cli", "man") and not arguments.program:
+        parser.error(f"{arguments.what} needs the program")
+    if arguments.what == "man":
+        sys.stdout.write(man_page(os.path.abspath(arguments.program)))
+        return
     if arguments.what == "cli":
-        if not arguments.program:
-            parser.error("cli needs the program")
         pages = cli_pages(os.path.abspath(arguments.program))
     elif arguments.what == "api":
         pages = api_page()

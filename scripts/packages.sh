@@ -32,6 +32,10 @@ voxdag_extended_packages=(
 # scripts/site.sh builds the program for browsers with these.
 voxdag_wasm_packages=(emscripten googletest)
 
+# scripts/release.sh makes the files of a release with these.
+voxdag_release_packages=(libopenvdb-dev libnanovdb-dev libboost-dev pybind11-dev python3-dev python3-numpy
+  python3-wheel patchelf file)
+
 # The tests of the viewer in browsers skip themselves without these.
 voxdag_browser_packages=(chromium firefox-esr xvfb xauth)
 # A Node from elsewhere brings its own npm, which conflicts with Debian's package.

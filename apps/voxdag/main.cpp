@@ -1,13 +1,14 @@
 /// The voxdag command line.
 #include "cli/commands.hpp"
 #include "cli/run_program.hpp"
+#include "version.hpp"
 
 int main(int argc, char** argv) {
   using namespace voxdag::cli;
   return run_program(
       argc, argv,
       {.name = "voxdag",
-       .version = VOXDAG_VERSION,
+       .version = version_text(),
        .purpose = "Sparse voxel DAGs and octrees from triangle meshes: build, inspect, trace and "
                   "render them.",
        .families = {

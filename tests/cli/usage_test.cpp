@@ -13,10 +13,12 @@ const std::vector<std::string> kCommands = {
     "shift",  "mirror",  "rotate",     "dilate",  "erode", "fill",       "query",
     "import", "coarsen", "hollow",     "edit"};
 
-TEST(Usage, VersionIsOneLine) {
+TEST(Usage, VersionBeginsWithItsNumber) {
   const ProcessResult result = run_voxdag({"--version"});
   EXPECT_EQ(result.status, 0);
-  EXPECT_EQ(result.out, "voxdag " VOXDAG_VERSION "\n");
+  EXPECT_TRUE(result.out.starts_with("voxdag " VOXDAG_VERSION "\n")) << result.out;
+  for (const char* line : {"\nbuilt with: ", "\nvector instructions: "})
+    EXPECT_NE(result.out.find(line), std::string::npos) << result.out;
 }
 
 TEST(Usage, HelpNamesEveryCommand) {

@@ -54,8 +54,10 @@ export function makeEditing(ui, secret) {
     version = Object.values(update.version).join();
     if (!isOpen) first = saved = version;
     if (root === NO_NODE && !isOpen) brush.verb = 'add';
+    const begins = page !== null && !isOpen;
     isOpen = true;
     ui.refresh();
+    if (begins) tool.toggle();
   }, fail);
   const stop = (/** @type {string} */ reason) => {
     isOpen = canBegin = false;
@@ -107,7 +109,6 @@ export function makeEditing(ui, secret) {
     await page?.begin(await viewer.scene(), `${ui.name()}.vdag`, signal);
     canBegin = false;
     client.open();
-    tool.toggle();
   });
   const undo = () => { if (isOpen && undos > 0) client.undo(); };
   const redo = () => { if (isOpen && redos > 0) client.redo(); };
