@@ -1,7 +1,7 @@
 # voxdag_optimize(-O1|-O2 TARGET ...) compiles targets of a Release build with less than CMake's -O3, which
 # takes a sixth to a third less time: for what waits for files and people, and has no hot loops.
 function(voxdag_optimize level)
-  if(EMSCRIPTEN)
+  if(EMSCRIPTEN AND level STREQUAL -O1)
     set(level -Os)  # a page loads it first
   endif()
   foreach(target ${ARGN})

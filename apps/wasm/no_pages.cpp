@@ -10,6 +10,10 @@ bool is_page_output(const std::string& output) {
 
 void check_page_output(const std::string&, const Session&) {}
 
+void export_start_page(const std::string& output, const PageViewArguments&, Session&) {
+  throw Error(output, "", "the page itself saves pages");
+}
+
 void export_page(const std::string& output, const ShownSceneArguments&, const PageViewArguments&,
                  Session&) {
   throw Error(output, "", "this voxdag writes no pages: its viewer does");

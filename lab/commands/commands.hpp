@@ -6,6 +6,7 @@ namespace voxdag::lab {
 using namespace cli;
 
 void add_bench_build_command(const Command& program, Session& session);
+void add_bench_conformance_command(const Command& program, Session& session);
 void add_bench_trace_command(const Command& program, Session& session);
 void add_bench_esvo_command(const Command& program, Session& session);
 void add_bench_esvo_rays_command(const Command& program, Session& session);

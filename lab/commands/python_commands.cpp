@@ -44,6 +44,12 @@ void add_bench_build_command(const Command& bench, Session& session) {
       "Measure time, memory and growth of builds, each in a process of its own");
 }
 
+void add_bench_conformance_command(const Command& bench, Session& session) {
+  add(bench, session, "conformance",
+      "Check voxels, nodes, files and hits of fixed scenes against the table of "
+      "docs/conformance.md");
+}
+
 void add_bench_esvo_command(const Command& bench, Session& session) {
   add(bench, session, "esvo",
       "Measure size, build time, rays per second and silhouettes of ESVOs, with and without "

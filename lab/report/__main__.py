@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 
-COMMANDS = {"build": "bench_build", "esvo": "bench_esvo", "papers": "papers", "show": "show"}
+COMMANDS = {"build": "bench_build", "conformance": "conformance", "esvo": "bench_esvo", "papers": "papers", "show": "show"}
 
 
 class Cancelled(BaseException):

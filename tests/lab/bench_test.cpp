@@ -173,6 +173,17 @@ TEST_F(BenchBuild, AKilledBenchmarkLeavesNoScratchFolder) {
   while (has_folder()) usleep(1000);  // ctest's time limit is the limit
 }
 
+TEST(BenchConformance, RowsAreThoseOfTheTable) {
+  const ProcessResult result = run_voxdag({"bench", "conformance", "--scene", "terrain"});
+  EXPECT_EQ(result.status, 0) << result.out << result.err;
+  EXPECT_EQ(result.out, "voxdag: all 4 rows are those of the table\n");
+  const TempDir dir;
+  write_text(dir / "mine.csv", "scene,grid,voxels\nsponge,64,1\n");
+  const ProcessResult wrong = run_voxdag({"bench", "conformance", "--check", dir / "mine.csv"});
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_NE(wrong.out.find("sponge at 64³: voxels is 1, in the table "), std::string::npos);
+}
+
 TEST(BenchUntrusted, RunsACaseAndNamesWhatItCost) {
   const ProcessResult result =
       run_voxdag({"bench", "untrusted", "--only", "every face 1,000 times: ESVO", "--json"});
