@@ -176,7 +176,7 @@ describeInBrowsers('loading', (browserName, browser) => {
     await still(page);
     const [ofWire, ofPages] = await page.evaluate(async (base64) => {
       const { SceneLoader } = await import(new URL('file/scene_loader.js', document.baseURI).href);
-      /** @param {{url?: string, bytes?: ArrayBuffer}} from */
+      /** @param {{url?: string, file?: Blob}} from */
       const load = (from) => new Promise((resolve) => {
         const loader = new SceneLoader((/** @type {any} */ message) => {
           if (message.type === 'info') loader.load({ shown: 2, colors: true, normals: true });
@@ -189,7 +189,7 @@ describeInBrowsers('loading', (browserName, browser) => {
       });
       const same = (/** @type {any} */ a, /** @type {any} */ b) => [a.colors.length, a.normals.length, JSON.stringify(a) === JSON.stringify(b)];
       const wire = await load({ url: 'scene.vdag' });
-      const pages = await load({ bytes: Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)).buffer });
+      const pages = await load({ file: new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))]) });
       return [same(wire, pages), same(pages, pages)];
     }, fs.readFileSync(file).toString('base64'));
     assert.ok(ofWire[0] > 10_000 && ofWire[1] > 40_000);
@@ -226,7 +226,7 @@ describeInBrowsers('loading', (browserName, browser) => {
           loader.close();
           resolve(outcome);
         };
-        loader.open({ bytes: broken.slice().buffer });
+        loader.open({ file: new Blob([broken]) });
       });
       const results = { whole: await load(whole), cuts: /** @type {any[]} */ ([]), flips: /** @type {any[]} */ ([]) };
       for (const cut of cuts) results.cuts.push(await load(whole.subarray(0, cut)));

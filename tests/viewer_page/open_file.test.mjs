@@ -8,6 +8,9 @@ import zlib from 'node:zlib';
 import { openFiles } from '../../apps/viewer/page/ui/open_file.js';
 import { DEFAULTS, NO_PLACES, mergeSettings } from '../../apps/viewer/page/settings.js';
 
+// Debian's Node 18 has it in node:buffer only.
+globalThis.File ??= File;
+
 /** The part of the worker that reads files of this computer. */
 const worker = vm.runInNewContext(
   ['source', 'blob_source'].map((name) => fs.readFileSync(new URL(`../../apps/viewer/page/file/worker/${name}.js`, import.meta.url), 'utf8')).join('') +

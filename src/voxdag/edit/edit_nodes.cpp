@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cstring>
 
+#include "voxdag/core/checked_size.hpp"
+#include "voxdag/core/io/pages.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/stored/svdag/long_svdag.hpp"
 
@@ -15,6 +17,8 @@ constexpr std::uint64_t kStep = kHugePage;
 constexpr std::uint64_t kMaxBlocks = 0xFFFFFFFFull;
 /// The sizes of the runs of words and blocks that a writer takes.
 constexpr std::uint32_t kRunWords = 1024, kRunBlocks = 512;
+/// 32-bit pointers address no more nodes, or the memory of a browser ends.
+constexpr char kNoRoom[] = "there is no room for more edits: save the scene and open it again";
 
 std::uint64_t rounded_up(std::uint64_t bytes) { return (bytes + kStep - 1) / kStep * kStep; }
 
@@ -38,8 +42,10 @@ EditNodes::EditNodes(const SvdagView& base, Work work) : work_(work) {
   if (base.node_words() > kMaxPlainWords)
     throw Error("the DAG is too large to edit: its nodes have more than 2^32 words");
   assert(base.root == 0);
-  words_ = PageVector<std::uint32_t>::zeros(kMaxPlainWords);
-  blocks_ = PageVector<std::uint64_t>::zeros(kMaxBlocks);
+  words_ = PageVector<std::uint32_t>::zeros(
+      checked_size(bytes_to_map(4 * base.node_words(), 4 * kMaxPlainWords) / 4));
+  blocks_ = PageVector<std::uint64_t>::zeros(
+      checked_size(bytes_to_map(8 * base.leaf_block_count, 8 * kMaxBlocks) / 8));
   count_memory(base.node_words(), base.leaf_block_count);
   copy_in_parts(base.nodes, base.node_words(), words_.data());
   copy_in_parts(base.leaf_blocks, base.leaf_block_count, blocks_.data());
@@ -195,9 +201,7 @@ void EditNodes::take_words(Run& run, std::uint32_t count) {
   run = free_words_.take(count, kRunWords, rest);
   free_words(rest);
   if (run.next == run.end) {
-    if (words_end_ + kRunWords > kMaxPlainWords)
-      throw Error(
-          "the DAG is too large: its nodes have more words than 32-bit pointers can address");
+    if (words_end_ + kRunWords > words_.size()) throw Error(kNoRoom);
     count_memory(words_end_ + kRunWords, blocks_end_);
     const auto begin = static_cast<std::uint32_t>(words_end_);
     run = {begin, begin + kRunWords};
@@ -212,8 +216,7 @@ void EditNodes::take_blocks(Run& run) {
   run = free_blocks_.take(1, kRunBlocks, rest);
   free_blocks_.add(rest);
   if (run.next == run.end) {
-    if (blocks_end_ + kRunBlocks > kMaxBlocks)
-      throw Error("the DAG is too large: it has more leaf blocks than 32-bit pointers can address");
+    if (blocks_end_ + kRunBlocks > blocks_.size()) throw Error(kNoRoom);
     count_memory(words_end_, blocks_end_ + kRunBlocks);
     const auto begin = static_cast<std::uint32_t>(blocks_end_);
     run = {begin, begin + kRunBlocks};

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "voxdag/core/checked_size.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/pages.hpp"
 
 namespace voxdag {
 namespace {
@@ -13,7 +15,8 @@ constexpr std::uint32_t kMaxReferences = 1u << 28;
 }  // namespace
 
 EditValues::EditValues(Work work)
-    : words_(PageVector<std::uint32_t>::zeros(std::size_t{8} * kMaxReferences)),
+    : words_(PageVector<std::uint32_t>::zeros(
+          checked_size(bytes_to_map(0, std::uint64_t{32} * kMaxReferences) / 4))),
       memory_(work.memory, kHugePage) {}
 
 std::uint32_t EditValues::add(const std::uint32_t (&children)[8]) {
@@ -25,7 +28,8 @@ std::uint32_t EditValues::add(const std::uint32_t (&children)[8]) {
     at = free_.back();
     free_.pop_back();
   } else {
-    if (end_ == kMaxReferences) throw Error("the edits have too many different values");
+    if (8 * (std::uint64_t{end_} + 1) > words_.size())
+      throw Error("the edits have too many different values");
     const std::uint64_t bytes = (bytes_of(end_ + 1) + kHugePage - 1) / kHugePage * kHugePage;
     if (bytes > memory_.bytes()) memory_.resize(bytes);
     ++end_;

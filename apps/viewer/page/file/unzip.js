@@ -41,9 +41,15 @@ export async function unzip(zip, wanted = () => true) {
     const head = await bytesAt(place, 30), begin = place + 30 + head.getUint16(26, true) + head.getUint16(28, true);
     if (begin + packed > zip.size) throw new Error('the ZIP is damaged: it was cut off');
     const data = zip.slice(begin, begin + packed);
-    files.push({ name, data: await checked(name, method === 0 ? data.stream() : data.stream().pipeThrough(new DecompressionStream('deflate-raw')), size, crc) });
+    files.push({ name, data: await checked(name, method === 0 ? data.stream() : inflated(data, size, crc), size, crc) });
   }
   return files;
+}
+
+/** Returns what a file of the ZIP is packed of, as a gzip: Node 18 and older browsers know no bare deflate. @param {Blob} data @param {number} size @param {number} crc */
+function inflated(data, size, crc) {
+  const gzip = new Blob([Uint8Array.of(0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255), data, Uint32Array.of(crc, size)]);
+  return gzip.stream().pipeThrough(new DecompressionStream('gzip'));
 }
 
 /** Reads a file of the ZIP, and compares its size and checksum. @param {string} name @param {ReadableStream} stream @param {number} size @param {number} crc */

@@ -12,6 +12,11 @@ void* map_pages(std::size_t bytes, bool) noexcept {
   return memory;
 }
 
+std::uint64_t bytes_to_map(std::uint64_t bytes, std::uint64_t most) noexcept {
+  constexpr std::uint64_t kRoom = std::uint64_t{32} << 20;
+  return std::min(most, bytes + std::max(bytes, kRoom));
+}
+
 void* resize_pages(void* pages, std::size_t old_bytes, std::size_t new_bytes) noexcept {
   void* const memory = map_pages(new_bytes);
   if (memory == nullptr) return nullptr;

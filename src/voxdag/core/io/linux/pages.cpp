@@ -30,6 +30,8 @@ void* map_pages(std::size_t bytes, bool may_be_huge) noexcept {
   return begin;
 }
 
+std::uint64_t bytes_to_map(std::uint64_t, std::uint64_t most) noexcept { return most; }
+
 void* resize_pages(void* pages, std::size_t old_bytes, std::size_t new_bytes) noexcept {
 #ifdef VOXDAG_TSAN
   // ThreadSanitizer does not follow mremap: it would take the last user of these addresses for one
