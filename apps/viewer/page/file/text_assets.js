@@ -2,7 +2,7 @@
 import { host } from './host.js';
 
 /** Returns the page's folder. A page in a single file has none: new URL() throws there. */
-export const root = () => new URL('../', import.meta.url);
+export const root = () => new URL(/* @vite-ignore */ '../', import.meta.url);
 
 /**
  * Returns the text of a file of the page, from the host or else from the page's folder.
