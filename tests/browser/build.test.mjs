@@ -246,7 +246,7 @@ describeInBrowsers('build', (browserName, browser) => {
       };
     });
     await drop(page, { 'square.obj': square('') });
-    await message(page, 'Build: the browser has ended the work');
+    await message(page, 'Build: the work has ended early');
     await page.evaluate(() => document.querySelector('.toast.error')?.toggleAttribute('hidden', true));
     for (let i = 0; i < 10; ++i) {
       await drop(page, { [`square${i}.obj`]: square('') });

@@ -10,7 +10,8 @@ import zlib from 'node:zlib';
 /** A complete copy of the page, made by the build. */
 const PAGE = process.env.VOXDAG_PAGE ?? '';
 
-const files = list('');
+/** The files of the page itself, without those of the program for browsers. */
+const files = list('').filter((name) => !/^build.voxdag\./.test(name));
 
 /** Returns the files below a folder of the page. @param {string} folder @returns {string[]} */
 function list(folder) {
@@ -23,7 +24,7 @@ function check(name, options, include) {
   const config = path.join(PAGE, '..', `tsconfig.${name}.json`);
   fs.writeFileSync(config, JSON.stringify({
     compilerOptions: { checkJs: true, allowJs: true, strict: true, noEmit: true, target: 'es2022', module: 'es2022', moduleResolution: 'bundler', types: [], ...options },
-    include: include.map((pattern) => path.join(PAGE, pattern)), exclude: name === 'page' ? [path.join(PAGE, 'file/worker/*')] : [],
+    include: include.map((pattern) => path.join(PAGE, pattern)), exclude: name === 'page' ? ['file/worker/*', 'build/voxdag.js'].map((pattern) => path.join(PAGE, pattern)) : [],
   }));
   const result = spawnSync(fileURLToPath(new URL('node_modules/.bin/tsc', import.meta.url)), ['-p', config], { encoding: 'utf8' });
   assert.equal(result.status, 0, result.stdout);

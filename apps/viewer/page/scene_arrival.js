@@ -4,10 +4,10 @@
  */
 import { inlineScene } from './file/byte_source.js';
 import { SceneLoader } from './file/scene_loader.js';
-import { SceneTextures } from './gpu/scene_textures.js';
-import { axisNamed, homeView } from './hands/pose.js';
+import { SceneTextures, finestLevelThatFits } from './gpu/scene_textures.js';
+import { boundsOf, firstView, sceneInfo } from './scene_info.js';
 import { SceneMemory } from './scene_memory.js';
-import { bounds, guessUp } from './trace.js';
+import { guessUp } from './trace.js';
 
 /**
  * @typedef {import('./file/scene_loader.js').FileInfo} FileInfo
@@ -15,9 +15,6 @@ import { bounds, guessUp } from './trace.js';
  * @typedef {import('./viewer_types.js').SceneInfo} SceneInfo
  * @typedef {import('./math.js').Vec3} Vec3
  */
-
-/** The scene's bounds are those of its cells of this level: finer ones would take long to visit. */
-const BOUNDS_LEVEL = 9;
 
 export class SceneArrival {
   /**
@@ -51,7 +48,7 @@ export class SceneArrival {
 
   /**
    * Begins to load: from bytes, from an address, from a file of this computer, or else from the page itself or the file beside it.
-   * @param {{url?: string, bytes?: ArrayBuffer, file?: Blob}} from
+   * @param {{url?: string, bytes?: BlobPart, file?: Blob}} from
    */
   async open({ url, bytes, file }) {
     if (bytes !== undefined) file = new Blob([bytes]);
@@ -99,21 +96,15 @@ export class SceneArrival {
 
   /** Makes room for the scene, and asks for its levels. @param {FileInfo} info @param {number} bytes  Loaded so far. */
   #begin(info, bytes) {
-    this.memory = new SceneMemory(this.gl, info);
+    this.memory = new SceneMemory(info, finestLevelThatFits(this.gl, info));
     this.textures = this.#newTextures(this.memory);
     const { finest, isWhole } = this.memory;
-    const { levels, resolution, origin, voxelSize, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, materials, source } = info;
-    const side = voxelSize * resolution;
-    const box = { low: origin, high: /** @type {Vec3} */ (origin.map((x) => x + side)) };
-    this.info = {
-      name: source.name, levels, resolution, origin, voxelSize, bounds: box, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, materials, source,
-      view: this.#homeIn(box, info), home: info.home, cubes: info.cubes, unit: info.unit,
-    };
+    this.info = sceneInfo(info, this.guessed, this.aspect());
     this.bytesLoaded = bytes;
     this.report('info', this.info);
     if (info.isEmpty) this.report('note', 'This scene has no voxels.');
-    if (!isWhole) this.report('note', `This scene is too large for the graphics card: it is shown down to level ${finest} of ${levels}.`);
-    this.loader.load({ shown: finest, colors: hasColors && isWhole, normals: hasNormals && isWhole, materials: materials !== null && isWhole });
+    if (!isWhole) this.report('note', `This scene is too large for the graphics card: it is shown down to level ${finest} of ${info.levels}.`);
+    this.loader.load({ shown: finest, colors: info.hasColors && isWhole, normals: info.hasNormals && isWhole, materials: info.materials !== null && isWhole });
   }
 
   /** Takes a level or the attributes. @param {LoaderMessage} message */
@@ -122,25 +113,20 @@ export class SceneArrival {
     if (info === null || memory === null || textures === null) return;
     memory.add(message, textures);
     if (message.type === 'attributes') return this.report('look', {});
-    info.bounds = bounds(memory.dag(), BOUNDS_LEVEL) ?? info.bounds;
+    this.measure();
     if (memory.info.up === null && memory.shown <= 7) this.guessed = guessUp(memory.dag());
-    info.view = this.#homeIn(info.bounds, memory.info);
+    this.fit();
     this.report('level', { level: memory.shown, levels: info.levels, bytes: this.bytesLoaded });
   }
 
-  /** Takes the bounds of an edited scene. */
+  /** Takes the bounds of the cells that have arrived or were edited. */
   measure() {
-    if (this.info !== null && this.memory !== null) this.info.bounds = bounds(this.memory.dag(), BOUNDS_LEVEL) ?? this.info.bounds;
+    if (this.info !== null && this.memory !== null) this.info.bounds = boundsOf(this.memory.dag()) ?? this.info.bounds;
   }
 
-  /** Returns the first view of the scene. Its up vector is that of the file, else it is guessed. @param {import('./hands/pose.js').Box} box @param {FileInfo} info */
-  #homeIn(box, { up, home }) {
-    return homeView(box, this.aspect(), up === null ? this.guessed : axisNamed(up), home);
-  }
-
-  /** Frames the home view again, after the picture has another shape. */
+  /** Frames the home view again, after the bounds or the shape of the picture have changed. */
   fit() {
-    if (this.info !== null && this.memory !== null) this.info.view = this.#homeIn(this.info.bounds, this.memory.info);
+    if (this.info !== null && this.memory !== null) this.info.view = firstView(this.info.bounds, this.memory.info, this.guessed, this.aspect());
   }
 
   /** Uploads how often nodes are used, unless the textures hold it: they follow each level from then on. */

@@ -2,7 +2,6 @@
  * The levels of a scene that have arrived, in memory: for rays on the CPU, and to fill textures
  * again after the graphics card has lost them.
  */
-import { finestLevelThatFits } from './gpu/scene_textures.js';
 import { cellNumber, countMaterials, materialOf, overlayAt, withPlaces } from './materials.js';
 
 /** @typedef {import('./file/scene_loader.js').FileInfo} FileInfo */
@@ -11,11 +10,11 @@ import { cellNumber, countMaterials, materialOf, overlayAt, withPlaces } from '.
 /** The roots of the DAG and of the values that edits gave to cells. @typedef {{root: number, colors: number, normals: number, materials: number}} Version */
 
 export class SceneMemory {
-  /** @param {WebGL2RenderingContext} gl @param {FileInfo} info */
-  constructor(gl, info) {
+  /** @param {FileInfo} info @param {number} [finest]  The finest level of cells that is wanted. */
+  constructor(info, finest = info.levels) {
     this.info = info;
-    this.finest = finestLevelThatFits(gl, info);
-    /** Whether the card can hold all levels. */
+    this.finest = finest;
+    /** Whether all levels are wanted. */
     this.isWhole = this.finest === info.levels;
     this.nodes = new Uint32Array(this.isWhole ? info.words : info.levelBegin[this.finest]);
     this.leaves = new Uint32Array(this.isWhole ? 2 * info.leafBlocks : 0);
@@ -57,28 +56,28 @@ export class SceneMemory {
   /** @type {number[] | null} */
   counts = null;
 
-  /** Takes a level or the attributes from the loader, and uploads them. @param {LoaderMessage} message @param {SceneTextures} textures */
+  /** Takes a level or the attributes from the loader, and uploads them if there are textures. @param {LoaderMessage} message @param {SceneTextures | null} textures */
   add(message, textures) {
     if (message.type === 'level') {
       const begin = this.info.levelBegin[message.level];
       this.nodes.set(message.words, begin);
       if (message.codes !== null) this.nodeInstances.set(message.codes, begin);
-      textures.nodes.set(begin, message.words);
+      textures?.nodes.set(begin, message.words);
     } else if (message.type === 'leaves') {
       this.leaves.set(message.halves);
       if (message.codes !== null) this.leafInstances.set(message.codes);
-      textures.leaves.set(0, message.halves);
+      textures?.leaves.set(0, message.halves);
     } else if (message.type === 'attributes') {
       this.attributes = message;
       this.cells = withPlaces(message.index, this.info.levelBegin);
-      textures.setLook(message);
+      textures?.setLook(message);
       return;
     } else {
       return;
     }
     this.shown = message.shown;
     this.mostInstances = Math.max(this.mostInstances, message.mostInstances);
-    if (textures.nodeInstances !== null) this.uploadInstances(textures);
+    if (textures && textures.nodeInstances !== null) this.uploadInstances(textures);
   }
 
   /** @param {SceneTextures} textures */

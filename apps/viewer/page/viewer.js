@@ -30,7 +30,7 @@ const ANY_CAMERA = { eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 40 }
 /**
  * Makes a viewer in a container, and begins to load a scene: from `url`, from `bytes`, or the one
  * that the page holds itself. An `empty` viewer waits for open(). Failures are 'error' events { title, text, kind }.
- * @param {{container: HTMLElement, url?: string, bytes?: ArrayBuffer, settings?: PartialSettings, empty?: boolean}} options
+ * @param {{container: HTMLElement, url?: string, bytes?: BlobPart, settings?: PartialSettings, empty?: boolean}} options
  * @returns {Viewer}
  */
 export function createViewer(options) {
@@ -80,7 +80,7 @@ class CanvasViewer extends Events {
     this.started = Promise.resolve().then(() => this.#start(url, bytes, empty)).catch((error) => this.#fail('The viewer cannot start', messageOf(error)));
   }
 
-  /** @param {string | undefined} url @param {ArrayBuffer | undefined} bytes @param {boolean} empty */
+  /** @param {string | undefined} url @param {BlobPart | undefined} bytes @param {boolean} empty */
   async #start(url, bytes, empty) {
     const gl = this.canvas.getContext('webgl2', { alpha: false, antialias: false, depth: false, stencil: false, powerPreference: 'high-performance' });
     if (gl === null)

@@ -3,6 +3,7 @@
  * worker and an instance of its own: its memory goes when it ends, and a run that fails harms no other.
  */
 import { packedFile } from '../file/byte_source.js';
+import { host } from '../file/host.js';
 import { loadText } from '../file/text_assets.js';
 
 /** @typedef {{name: string, data: Blob}} InputFile  The program sees it as /in/NAME. */
@@ -24,7 +25,7 @@ function load() {
   loading ??= (async () => {
     const [program, worker, packed] = await Promise.all([
       loadText('build/voxdag.js'), loadText('build/program_worker.js'), packedFile('build/voxdag.wasm.gz')]);
-    return { script: URL.createObjectURL(new Blob([program, '\n', worker], { type: 'text/javascript' })), module: await WebAssembly.compile(packed) };
+    return { script: `${program}\n${worker}`, module: await WebAssembly.compile(packed) };
   })();
   loading.catch(() => { loading = null; });
   return loading;
@@ -32,7 +33,7 @@ function load() {
 
 /** An instance of the program in a worker of its own, with files that it sees in /in. */
 export class Program {
-  /** @param {Worker} worker @param {Job} job */
+  /** @param {import('../file/host.js').HostWorker} worker @param {Job} job */
   constructor(worker, { onProgress, signal }) {
     this.worker = worker;
     this.watch = new AbortController();
@@ -42,7 +43,7 @@ export class Program {
     this.last = Promise.resolve();
     /** Why it has ended. @type {Error | null} */
     this.end = null;
-    const died = () => this.close('the browser has ended the work, perhaps because memory was short');
+    const died = () => this.close('the work has ended early, perhaps because memory was short');
     signal?.addEventListener('abort', () => this.close('cancelled'), { signal: this.watch.signal });
     worker.onerror = died;
     worker.onmessage = ({ data }) => {
@@ -57,7 +58,7 @@ export class Program {
   static async start(files, job = {}) {
     const { script, module } = await load();
     job.signal?.throwIfAborted();
-    const program = new Program(new Worker(script), job);
+    const program = new Program(host.makeWorker(script), job);
     program.worker.postMessage({ module, files });
     return program;
   }
@@ -88,11 +89,21 @@ export class Program {
  * @param {string[]} args @param {InputFile[]} files @param {Job} [job]  `signal` ends the run. @returns {Promise<Result>}
  */
 export async function run(args, files, job) {
+  const result = await runForBytes(args, files, job);
+  return { ...result, files: asFiles(result.files) };
+}
+
+/**
+ * Runs the command line as run() does, and returns its files as bytes: Node 18 has no File.
+ * @param {string[]} args @param {InputFile[]} files @param {Job} [job]
+ * @returns {Promise<Omit<Result, 'files'> & {files: {name: string, bytes: Uint8Array<ArrayBuffer>}[]}>}
+ */
+export async function runForBytes(args, files, job) {
   const program = await Program.start(files, job);
   try {
     const result = await program.send({ args });
     if (result.status !== 0) throw new Error(errorLine(result.lines) ?? `the program ended with status ${result.status}`);
-    return { ...result, files: asFiles(result.files) };
+    return result;
   } finally {
     program.close();
   }

@@ -7,8 +7,7 @@
 
 /** @param {any} message @param {Transferable[]} [transfer] */
 const send = (message, transfer = []) => /** @type {any} */ (self).postMessage(message, transfer);
-/** @type {string[]} */
-const out = [], lines = [];
+const out = /** @type {string[]} */ ([]), lines = /** @type {string[]} */ ([]);
 /** @type {WebAssembly.Memory | undefined} */
 let memory;
 
@@ -21,8 +20,9 @@ function holdLock() {
       resolve(undefined);
       return new Promise(() => undefined);
     };
-    // Some pages from disk may have no locks.
-    if (navigator.locks) navigator.locks.request(name, hold).catch(resolve);
+    const locks = globalThis.navigator?.locks;
+    // Some pages from disk, and Node before 24, have no locks.
+    if (locks) locks.request(name, hold).catch(resolve);
     else resolve(undefined);
   });
 }
@@ -43,8 +43,20 @@ async function start(module, files) {
   });
   program.FS.mkdir('/in');
   program.FS.mkdir('/out');
-  if (files.length > 0) program.FS.mount(program.FS.filesystems.WORKERFS, { blobs: files }, '/in');
+  await addInputs(program.FS, files);
   return program;
+}
+
+/** Shows the program its files in /in. @param {any} FS @param {{name: string, data: Blob}[]} files */
+async function addInputs(FS, files) {
+  if (files.length === 0) return;
+  if ('FileReaderSync' in self) return FS.mount(FS.filesystems.WORKERFS, { blobs: files }, '/in');
+  // Node reads no part of a Blob at once: the files are copied into memory.
+  for (const { name, data } of files) {
+    const path = `/in/${name}`;
+    FS.mkdirTree(path.slice(0, path.lastIndexOf('/')));
+    FS.writeFile(path, new Uint8Array(await data.arrayBuffer()), { canOwn: true });
+  }
 }
 
 /** Takes the files that the program has written. @param {any} FS */
@@ -78,6 +90,6 @@ self.onmessage = async ({ data }) => {
     send({ type: 'done', ...result }, result.files.map((/** @type {{bytes: Uint8Array}} */ file) => file.bytes.buffer));
   } catch (error) {
     const text = String(/** @type {any} */ (error)?.message ?? error);
-    send({ type: 'failed', text: /memory|OOM|alloc/i.test(text) || error instanceof RangeError ? 'it needs more memory than the browser gives' : `the program has failed: ${text}` });
+    send({ type: 'failed', text: /memory|OOM|alloc/i.test(text) || error instanceof RangeError ? 'it needs more memory than it gets' : `the program has failed: ${text}` });
   }
 };

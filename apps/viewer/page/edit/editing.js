@@ -123,9 +123,9 @@ export function makeEditing(ui, secret) {
     const name = fileName.trim();
     for (const replaces of [false, true])
       try {
-        const saved = await client.save(name, replaces);
+        const file = await client.save(name, replaces);
         saved = version;
-        return ui.toast(`Saved ${saved}`);
+        return ui.toast(`Saved ${file}`);
       } catch (error) {
         if (!(error instanceof Refused) || error.status !== 412) return ui.toast(/** @type {Error} */ (error).message, true);
         if (!window.confirm(`${error.message}. Replace it?`)) return;

@@ -3,6 +3,7 @@
  * sends it.
  */
 import { CELL_INDEX, DAG, FILE, PAGES, WIRE } from '../constants.js';
+import { host } from './host.js';
 import { loadText } from './text_assets.js';
 
 /** Codes of instances are this many times the binary logarithm of the number. */
@@ -38,7 +39,7 @@ export class SceneLoader {
   /** @param {(message: LoaderMessage) => void} onMessage */
   constructor(onMessage) {
     this.onMessage = onMessage;
-    /** @type {Worker | null} */
+    /** @type {import('./host.js').HostWorker | null} */
     this.worker = null;
     this.closed = false;
   }
@@ -48,9 +49,7 @@ export class SceneLoader {
     const texts = await Promise.all(PARTS.map((name) => loadText(`file/worker/${name}.js`)));
     if (this.closed) return;
     const constants = Object.entries({ FILE, DAG, PAGES, WIRE, CELL_INDEX, INSTANCE_STEPS }).map(([name, value]) => `const ${name} = ${JSON.stringify(value)};\n`);
-    const url = URL.createObjectURL(new Blob(["'use strict';\n", ...constants, ...texts], { type: 'text/javascript' }));
-    this.worker = new Worker(url);
-    URL.revokeObjectURL(url);
+    this.worker = host.makeWorker(["'use strict';\n", ...constants, ...texts].join(''));
     this.worker.onmessage = (event) => this.onMessage(event.data);
     this.worker.onerror = (event) => this.onMessage({ type: 'error', title: 'The scene cannot be loaded', text: event.message || 'Its loader failed.' });
     if (from.file !== undefined) this.worker.postMessage({ type: 'open', file: from.file });

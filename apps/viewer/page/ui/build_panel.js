@@ -1,4 +1,5 @@
 /** The panel "Build": builds a scene of a model, first a coarse one, then the one that a person chooses. */
+import { buildArguments } from '../build/build_arguments.js';
 import { MOST_BYTES, expected } from '../build/estimate.js';
 import { hasProgram, plainLine, run } from '../build/program.js';
 import { button, group, slider, textField, toggle } from './controls.js';
@@ -25,17 +26,9 @@ export function buildPanel(ui) {
 
   /** Whether a person chooses the resolution. */
   const isScaled = () => model?.kind === 'mesh' || model?.kind === 'points';
-  /** @param {Model} of @param {number} side */
-  const argumentsFor = ({ main, kind }, side) => {
-    const name = main.name.split('/').pop()?.replace(/\.\w+(\.gz|\.zst)?$/i, '') || 'scene', ends = ['--json', '-o', `/out/${name}.vdag`];
-    if (kind === 'mesh') return ['build', `/in/${main.name}`, '-r', String(side), ...(colors ? ['--color-if-any'] : []), ...(solid ? ['--solid', 'winding'] : []), ...ends];
-    const values = kind === 'volume' && threshold !== '' ? ['--threshold', threshold] : [];
-    return ['import', `/in/${main.name}`, ...(kind === 'points' ? ['-r', String(side)] : []), ...(colors ? [] : ['--no-color']), ...values, ...ends];
-  };
-
   /** Builds the model and shows it; the scene before stays until then. @param {Model} of @param {number} side */
   const build = (of, side) => ui.job('Build', async ({ signal, progress }) => {
-    const { out, lines, files, bytes } = await run(argumentsFor(of, side), of.files, { signal, onProgress: progress }).catch((error) => {
+    const { out, lines, files, bytes } = await run(buildArguments(of, { resolution: side, colors, solid, threshold }), of.files, { signal, onProgress: progress }).catch((error) => {
       if (!signal.aborted && /memory/.test(error.message) && side > LEAST) error.message += `: try a resolution of ${side / 2}`;
       throw error;
     });
