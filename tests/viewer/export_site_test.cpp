@@ -68,6 +68,7 @@ TEST(ExportSite, TheFolderHasThePageAndTheScene) {
       EXPECT_EQ(read_text(dir / name / file.path), text) << file.path;
       bytes -= text.size();
     }
+    if (has_program(page_files())) bytes -= read_text(dir / name / kTemplateName).size();
     EXPECT_EQ(bytes, 0u);
   }
   EXPECT_EQ(dir.count(), 2);
