@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""Compiles include/voxdag.h with each compiler of the machine, as C and as C++, with many options.
+
+    compilers_test.py VOXDAG
+
+None may warn. Programs of all of them must give equal answers about a scene: digest.c prints a digest of these. Without a C
+library, the header may need memcpy, fma, sqrtf and memset alone. Options that change results must be refused.
+Exit status: 0 if all of this holds, 1 if not, 77 without a compiler.
+"""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SOURCE = pathlib.Path(__file__).resolve().parent
+INCLUDE = SOURCE.parents[1] / "include"
+STRICT = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-pedantic", "-Werror", f"-I{INCLUDE}"]
+SANITIZERS = ["-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
+# Fused multiplication and addition is used where the processor has it.
+OPTIONS = [["-O0"], ["-O2"], ["-O3", "-march=native", "-ffp-contract=fast"], ["-Os", "-DVOXDAG_BYTEWISE"], SANITIZERS]
+DIALECTS = {
+    "gcc": ["c99", "gnu11"], "clang": ["c99", "gnu17"],
+    "g++": ["c++11", "c++20"], "clang++": ["c++11", "gnu++20"],
+}
+FREESTANDING = """
+#include <stddef.h>
+void* own_copy(void* to, const void* from, size_t bytes);
+double own_fma(double a, double b, double c);
+float own_root(float x);
+#define VOXDAG_MEMCPY own_copy
+#define VOXDAG_FMA own_fma
+#define VOXDAG_SQRTF own_root
+#define VOXDAG_IMPLEMENTATION
+#include "voxdag.h"
+"""
+
+
+def run(*command, check=True):
+    """Returns what the command prints. Its failure ends the test, unless `check` is false."""
+    process = subprocess.run([str(word) for word in command], text=True, check=False, capture_output=True)
+    if check and process.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}\nended with {process.returncode}:\n{process.stdout}{process.stderr}")
+    return process.stdout + process.stderr
+
+
+def language(compiler):
+    return ["-x", "c++" if "++" in compiler else "c"]
+
+
+def make_scene(voxdag, folder):
+    """Returns a file with colours, normals and materials."""
+    run(voxdag, "scene", "sponge", "--size", "2", "-o", folder / "scene.ply")
+    run(voxdag, "build", folder / "scene.ply", "-r", "128", "--color", "--normal", "--material-ids", "-o", folder / "scene.vdag")
+    return folder / "scene.vdag"
+
+
+def check_answers(compilers, scene, folder):
+    """Checks that digest.c prints one line, however it is compiled."""
+    digests = {}
+    for compiler in compilers:
+        for standard in DIALECTS[compiler]:
+            for options in OPTIONS:
+                command = [compiler, f"-std={standard}", *options, *STRICT, *language(compiler), SOURCE / "digest.c",
+                           "-o", folder / "digest", "-lm"]
+                run(*command)
+                digests.setdefault(run(folder / "digest", scene), " ".join(map(str, command)))
+    if len(digests) != 1:
+        sys.exit("\n".join(f"{command}\n  {digest}" for digest, command in digests.items()))
+    print(f"{len(compilers)} compilers, {next(iter(digests))}", end="")
+
+
+def check_freestanding(compiler, folder):
+    """Checks which functions the header needs without a C library."""
+    source = folder / "freestanding.c"
+    source.write_text(FREESTANDING, encoding="utf-8")
+    run(compiler, "-O2", "-ffreestanding", "-nostdlib", *STRICT, *language(compiler), "-c", source, "-o", folder / "free.o")
+    needed = {line.split()[-1] for line in run("nm", "-u", folder / "free.o").splitlines()}
+    own = {"own_copy", "own_fma", "own_root"}
+    surplus = {name for name in needed if not any(text in name for text in own)} - {"memset", "memcpy", "_GLOBAL_OFFSET_TABLE_"}
+    if surplus:
+        sys.exit(f"{compiler}: a freestanding header needs {', '.join(sorted(surplus))}")
+
+
+def check_refusals(compiler):
+    """Checks that options that change results are refused with a message."""
+    for options, text in ((["-ffast-math"], "fast mathematics"), (["-m32", "-mfpmath=387", "-mno-sse"], "-msse2 -mfpmath=sse")):
+        output = run(compiler, "-ffreestanding", "-fsyntax-only", *options, f"-I{INCLUDE}", "-DVOXDAG_IMPLEMENTATION",
+                     "-DVOXDAG_MEMCPY=a", "-DVOXDAG_FMA=a", "-DVOXDAG_SQRTF=a", *language(compiler), INCLUDE / "voxdag.h", check=False)
+        if text not in output and "unrecognized" not in output:
+            sys.exit(f"{compiler} {' '.join(options)} does not end with a message about {text}:\n{output}")
+
+
+def main():
+    compilers = [compiler for compiler in DIALECTS if shutil.which(compiler)]
+    if not compilers:
+        print("skipped: there is no compiler")
+        return 77
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        check_answers(compilers, make_scene(sys.argv[1], folder), folder)
+        for compiler in compilers:
+            check_freestanding(compiler, folder)
+            check_refusals(compiler)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
