@@ -41,6 +41,25 @@ class HeaderScene {
   std::string error_;
 };
 
+/// Returns the file with one of its chunks replaced, and offsets, sizes and checksums correct.
+inline std::string with_chunk(const std::string& bytes, std::uint32_t id,
+                              const std::string& content) {
+  const auto count = peek<VdagHeader>(bytes, 0).chunk_count;
+  std::string file = bytes.substr(0, vdag_align(entry_offset(count)));
+  for (std::size_t i = 0; i < count; ++i) {
+    auto entry = peek<VdagChunkEntry>(bytes, entry_offset(i));
+    const std::string chunk = entry.id == id ? content : bytes.substr(entry.offset, entry.length);
+    entry.offset = file.size();
+    entry.length = chunk.size();
+    poke(file, entry_offset(i), entry);
+    file += chunk;
+    file.resize(vdag_align(file.size()));
+  }
+  poke(file, offsetof(VdagHeader, file_bytes), std::uint64_t{file.size()});
+  repair_checksums(file);
+  return file;
+}
+
 inline std::string text_of(Vec3i v) {
   return std::to_string(v.x) + ' ' + std::to_string(v.y) + ' ' + std::to_string(v.z);
 }
