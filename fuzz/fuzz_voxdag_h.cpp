@@ -46,8 +46,8 @@ std::string seed_file(std::mt19937& rng) {
   const int finest = static_cast<int>(rng() % static_cast<unsigned>(levels + 1));
   const NumberColors numbers(dag.view(), finest);
   DagAttributesView attributes = numbers.view().attributes;
-  const ValuePages colors =
-      random_pages(attributes.index.cells, static_cast<int>(rng() % 8), rng(), 0.3);
+  const ValuePages colors = random_pages(attributes.index.cells, static_cast<int>(rng() % 8),
+                                         static_cast<unsigned>(rng()), 0.3);
   attributes.colors = colors.view();
   return vdag_file_bytes(dag, attributes);
 }

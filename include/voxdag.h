@@ -582,10 +582,10 @@ static vdag_chunk vdag_find_chunk(const voxdag_scene* scene, const char* name) {
 static const char* vdag_check_header(voxdag_scene* scene, size_t size) {
   static const unsigned char magic[8] = {0x89, 'V', 'D', 'A', 'G', '\r', '\n', 0x1A};
   const vdag_ptr file = scene->bytes;
-  for (size_t i = 0; i < 8; ++i) VDAG_CHECK(i < size && file[i] == magic[i], file, "no .vdag file");
+  VDAG_CHECK(size >= 8 && vdag_u64(file) == vdag_u64(magic), file, "not a .vdag file");
   VDAG_CHECK(size >= 64, file + size, "truncated: the file ends in its header");
   VDAG_CHECK(vdag_u32(file + 8) == 1, file + 8, "header: unknown version");
-  VDAG_CHECK(vdag_u64(file + 16) <= size, file + size, "truncated");
+  VDAG_CHECK(vdag_u64(file + 16) <= size, file + size, "truncated: the header states more");
   VDAG_CHECK(vdag_u64(file + 16) == size, file + 16, "the file is longer than it states");
   VDAG_CHECK(vdag_u32(file + 12) <= 1024 && vdag_u32(file + 12) <= (size - 64) / 32, file + 12,
              "header: so many chunks do not fit into the file");
@@ -689,17 +689,17 @@ static const char* vdag_check_levels(voxdag_scene* scene, size_t scratch_bytes) 
   VDAG_CHECK(nodes.bytes % 4 == 0, nodes.at, "chunk NODE: length is no multiple of 4");
   VDAG_CHECK(leaves.bytes % 8 == 0, leaves.at, "chunk LEAF: length is no multiple of 8");
   VDAG_CHECK(vdag_word64(at, (uint64_t)levels - 2) == words, at, "chunk LEVL: wrong last value");
-  VDAG_CHECK(words <= most && leaves.bytes / 8 <= most, at, "too many words for pointers");
+  VDAG_CHECK(words <= most && leaves.bytes / 8 <= most, at, "chunk NODE or LEAF: too long");
   VDAG_CHECK(vdag_u64(at) == 0, at, "chunk LEVL: level 0 does not begin at word 0");
   for (int level = 0; level <= VOXDAG_MAX_LEVELS; ++level)
     scene->level_begin[level] = level < levels - 2 ? vdag_word64(at, (uint64_t)level) : words;
   for (int level = 0; level < levels - 2; ++level) {
     const uint64_t begin = scene->level_begin[level], end = scene->level_begin[level + 1];
     VDAG_CHECK(end >= begin, at + 8 * level, "chunk LEVL: a level ends before it begins");
-    VDAG_CHECK(end > begin || leaves.bytes == 0, at + 8 * level, "a level has no nodes");
+    VDAG_CHECK(end > begin || leaves.bytes == 0, at + 8 * level, "chunk LEVL: empty level");
     VDAG_CHECK((end - begin + 7) / 8 <= scratch_bytes, at, "the scratch memory is too small");
   }
-  VDAG_CHECK(leaves.bytes != 0 || words == 0, nodes.at, "there are nodes, but no leaf blocks");
+  VDAG_CHECK(leaves.bytes != 0 || words == 0, nodes.at, "chunk LEAF is empty, but not NODE");
   VDAG_CHECK(levels > 2 || leaves.bytes <= 8, leaves.at, "chunk LEAF: more than one root");
   scene->nodes = nodes.at;
   scene->leaves = leaves.at;
@@ -760,7 +760,8 @@ static const char* vdag_check_nodes(voxdag_scene* scene, unsigned char* starts) 
   return NULL;
 }
 
-// Returns which child of its ancestor of level `level` - 1 - `up` a cell of `level` is or lies in.
+// Returns the child index of the ancestor `up` levels above a cell; of the cell itself if `up` is
+// 0.
 static uint32_t vdag_child(const int32_t cell[3], int up) {
   return (uint32_t)((cell[0] >> up & 1) | (cell[1] >> up & 1) << 1 | (cell[2] >> up & 1) << 2);
 }
@@ -952,10 +953,8 @@ static vdag_block vdag_read_block(const voxdag_pages* pages, uint64_t at) {
   block.length = ((header >> 3) + 1) * (precision < 4 ? 4 : 1);
   block.end = 2 * vdag_channel_bits(precision, 0) + vdag_channel_bits(precision, 1);
   block.weight = block.type % 4 == 0 ? 0 : block.type < 4 ? block.type : block.type - 3;
-  block.ends = block.end * (block.type < 4    ? 1
-                            : block.type == 4 ? block.length
-                                              : 2) +
-               (block.type >= 1 && block.type <= 3 ? 6 : 0);
+  const uint32_t ends = block.type < 4 ? 1 : block.type == 4 ? block.length : 2;
+  block.ends = ends * block.end + (block.type >= 1 && block.type <= 3 ? 6 : 0);
   block.all = header_bits + block.ends + (uint64_t)block.weight * block.length;
   return block;
 }

@@ -110,7 +110,7 @@ TEST(ReaderBrokenFiles, OtherKindsOfFilesAreRefusedByName) {
             "the file holds an ESVO, not a DAG");
   EXPECT_EQ(HeaderScene(long_vdag_bytes(dag)).error(),
             "the DAG has long pointers: `voxdag crop` and `voxdag coarsen` make smaller ones");
-  EXPECT_EQ(HeaderScene("solid cube").error(), "no .vdag file");
+  EXPECT_EQ(HeaderScene("solid cube").error(), "not a .vdag file");
 }
 
 TEST(ReaderBrokenFiles, AttributesInTheWireFormAreSkipped) {

@@ -3,8 +3,9 @@
 
     compilers_test.py VOXDAG
 
-None may warn. Programs of all of them must give equal answers about a scene: digest.c prints a digest of these. Without a C
-library, the header may need memcpy, fma, sqrtf and memset alone. Options that change results must be refused.
+None may warn. Programs of all of them must give equal answers about a scene: digest.c prints a digest of these. Cross compilers for
+other processors, one of which is big-endian, take part if QEMU runs their programs. Without a C library, the header may need memcpy,
+fma, sqrtf and memset alone. Options that change results must be refused.
 Exit status: 0 if all of this holds, 1 if not, 77 without a compiler.
 """
 
@@ -24,6 +25,8 @@ STANDARDS = {
     "gcc": ("c99", "gnu11"), "clang": ("c99", "gnu17"),
     "g++": ("c++11", "c++20"), "clang++": ("c++11", "gnu++20"),
 }
+# Compilers for other processors, and what runs their programs.
+CROSS = {"aarch64-linux-gnu-gcc": "qemu-aarch64", "s390x-linux-gnu-gcc": "qemu-s390x"}
 MATERIALS = "newmtl wood\nKd 0.6 0.4 0.2\nnewmtl iron\nKd 0.3 0.3 0.35\nnewmtl glass\nKd 0.9 1 0.9\n"
 MESH = """mtllib scene.mtl
 v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1
@@ -65,15 +68,22 @@ def make_scene(voxdag, folder):
 def check_answers(compilers, scene, folder):
     """Checks that digest.c prints one line, however it is compiled."""
     digests = {}
+
+    def compile_and_run(runner, *command):
+        run(*command, *STRICT, *language(command[0]), SOURCE / "digest.c", "-o", folder / "digest", "-lm")
+        digests.setdefault(run(*runner, folder / "digest", scene), " ".join(command))
+
     for compiler in compilers:
         for standard, options in WAYS:
-            command = [compiler, f"-std={STANDARDS[compiler][standard]}", *options, *STRICT, *language(compiler), SOURCE / "digest.c",
-                       "-o", folder / "digest", "-lm"]
-            run(*command)
-            digests.setdefault(run(folder / "digest", scene), " ".join(map(str, command)))
+            compile_and_run([], compiler, f"-std={STANDARDS[compiler][standard]}", *options)
+    for compiler, name in CROSS.items():
+        runner = shutil.which(name) or shutil.which(name + "-static")
+        if runner and shutil.which(compiler):
+            compile_and_run([runner], compiler, "-std=gnu99", "-O3", "-static")
+            print(f"{compiler}, ", end="")
     if len(digests) != 1:
         sys.exit("\n".join(f"{command}\n  {digest}" for digest, command in digests.items()))
-    print(f"{len(compilers)} compilers, {next(iter(digests))}", end="")
+    print(f"{', '.join(compilers)}: {next(iter(digests))}", end="")
 
 
 def check_freestanding(compiler, folder):
@@ -91,8 +101,8 @@ def check_freestanding(compiler, folder):
 def check_refusals(compiler):
     """Checks that options that change results are refused with a message."""
     for options, text in ((["-ffast-math"], "fast mathematics"), (["-m32", "-mfpmath=387", "-mno-sse"], "-msse2 -mfpmath=sse")):
-        output = run(compiler, "-ffreestanding", "-fsyntax-only", *options, f"-I{INCLUDE}", "-DVOXDAG_IMPLEMENTATION",
-                     "-DVOXDAG_MEMCPY=a", "-DVOXDAG_FMA=a", "-DVOXDAG_SQRTF=a", *language(compiler), INCLUDE / "voxdag.h", check=False)
+        output = run(compiler, "-ffreestanding", "-fsyntax-only", *options, "-DVOXDAG_IMPLEMENTATION", "-DVOXDAG_MEMCPY=a",
+                     "-DVOXDAG_FMA=a", "-DVOXDAG_SQRTF=a", *language(compiler), INCLUDE / "voxdag.h", check=False)
         if text not in output and "unrecognized" not in output:
             sys.exit(f"{compiler} {' '.join(options)} does not end with a message about {text}:\n{output}")
 

@@ -70,18 +70,23 @@ static uint64_t add_voxels(const voxdag_scene* scene) {
   return count;
 }
 
+// Casts rays between random points, and from corner to corner of voxels: there, an error in the
+// last bit of a sum makes a ray hit another voxel.
 static int add_rays(const voxdag_scene* scene) {
-  const double side = scene->info.voxel_size * scene->info.resolution;
+  const double size = scene->info.voxel_size, n = scene->info.resolution;
   int hits = 0;
   for (int i = 0; i < 30000; ++i) {
     voxdag_ray ray = {{0, 0, 0}, {0, 0, 0}, 0, 1e30f};
     voxdag_hit hit;
     for (int axis = 0; axis < 3; ++axis) {
-      const double from = 3 * next_number() - 1, to = next_number();
-      ray.origin[axis] = scene->info.origin[axis] + side * from;
-      ray.direction[axis] = i % 3 == axis && i % 5 == 0 ? 0 : side * (to - from);
+      double from = n * (3 * next_number() - 1), to = n * next_number();
+      if (i % 2 == 0) from = (double)(int)from;
+      if (i % 2 == 0) to = (double)(int)to;
+      ray.origin[axis] = scene->info.origin[axis] + size * from;
+      ray.direction[axis] = i % 3 == axis && i % 5 == 0 ? 0 : size * (to - from);
     }
     if (i % 7 == 0) ray.t_min = -1;
+    if (i % 7 == 1) ray.t_min = 0.5f;
     hits += voxdag_cast(scene, &ray, &hit);
     for (int axis = 0; axis < 3; ++axis) add((uint64_t)hit.voxel[axis]);
     add_float(hit.t);

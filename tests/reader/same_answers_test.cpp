@@ -2,6 +2,7 @@
 // all cells, and voxels of windows.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 #include "reader/header_scene.hpp"
