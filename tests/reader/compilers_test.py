@@ -5,11 +5,12 @@
 
 None may warn. Programs of all of them must give equal answers about a scene: digest.c prints a digest of these. Cross compilers for
 other processors, one of which is big-endian, take part if QEMU runs their programs. Without a C library, the header may need memcpy,
-fma, sqrtf and memset alone. Options that change results must be refused.
+fma, sqrtf and memset alone. Options that change results must be refused. The code of docs/reader.md must compile.
 Exit status: 0 if all of this holds, 1 if not, 77 without a compiler.
 """
 
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -31,6 +32,16 @@ MATERIALS = "newmtl wood\nKd 0.6 0.4 0.2\nnewmtl iron\nKd 0.3 0.3 0.35\nnewmtl g
 MESH = """mtllib scene.mtl
 v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1
 usemtl wood\nf 1 4 3 2\nf 5 6 7 8\nusemtl iron\nf 1 2 6 5\nf 4 8 7 3\nusemtl glass\nf 1 7 3
+"""
+PAGE = """
+#include <stdlib.h>
+{head}
+int fail(const char* error, uint64_t at);
+void place_marker(const int32_t voxel[3], int face, float t);
+int use(void* bytes, size_t size);
+int use(void* bytes, size_t size) {{
+{body}  return 0;
+}}
 """
 FREESTANDING = """
 #include <stddef.h>
@@ -98,6 +109,14 @@ def check_freestanding(compiler, folder):
         sys.exit(f"{compiler}: a freestanding header needs {', '.join(sorted(surplus))}")
 
 
+def check_page(compiler, folder):
+    """Checks that the C code of docs/reader.md compiles."""
+    page = (SOURCE.parents[1] / "docs/reader.md").read_text(encoding="utf-8")
+    head, body = re.search(r"^```c\n(.*?\n)\n(.*?)^```$", page, re.MULTILINE | re.DOTALL).groups()
+    (folder / "page.c").write_text(PAGE.format(head=head, body=body), encoding="utf-8")
+    run(compiler, "-fsyntax-only", *STRICT, *language(compiler), folder / "page.c")
+
+
 def check_refusals(compiler):
     """Checks that options that change results are refused with a message."""
     for options, text in ((["-ffast-math"], "fast mathematics"), (["-m32", "-mfpmath=387", "-mno-sse"], "-msse2 -mfpmath=sse")):
@@ -118,6 +137,7 @@ def main():
         for compiler in compilers:
             check_freestanding(compiler, folder)
             check_refusals(compiler)
+        check_page(compilers[0], folder)
     return 0
 
 
