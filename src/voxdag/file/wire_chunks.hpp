@@ -1,5 +1,5 @@
 #pragma once
-/// The chunks WCOL, WNRM and WMTI: the chunks COLR, NRML and MTID in the wire form (layout/wire/).
+/// The chunks WCOL, WNRM and WMTI: the chunks COLR, NRML and MTID in the wire form (stored/wire/).
 ///
 ///   0    WireHeader       64 bytes
 ///   64   wire::WireSegment[]    of the number of pages
