@@ -8,6 +8,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import { before, it } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
+import { gzipSync } from 'node:zlib';
 import { assertNoComplaints, describeInBrowsers, open } from './browser.mjs';
 import { readPng, spread } from './pictures.mjs';
 import { build, buildColored, folder, serveFolder, voxdag } from './program.mjs';
@@ -73,7 +74,15 @@ describeInBrowsers('the npm package', (_, browser) => {
     const scene = await make({ name: 'colored.ply', data }, { resolution: 128, onProgress: (/** @type {number} */ part) => parts.push(part) });
     assert.deepEqual(Buffer.from(scene.bytes), fs.readFileSync(native));
     assert.ok(scene.info.hasColors && parts.every((part) => part >= 0 && part <= 1));
-    assert.ok(Buffer.from(await scene.save('vox')).subarray(0, 4).equals(Buffer.from('VOX ')));
+    const packed = gzipSync(data), nativePacked = path.join(folder, 'packed.vdag');
+    fs.writeFileSync(`${mesh}.gz`, packed);
+    voxdag('build', `${mesh}.gz`, '-r', '128', '--color-if-any', '-o', nativePacked, '-q');
+    assert.deepEqual(Buffer.from((await make({ name: 'colored.ply.gz', data: packed }, { resolution: 128 })).bytes), fs.readFileSync(nativePacked));
+    for (const [format, ...args] of [['vox'], ['glb'], ['glb', '--texture'], ['stl'], ['ply'], ['obj', '--manifold'], ['3mf']]) {
+      const exported = path.join(folder, `native.${format}`);
+      voxdag('export', native, '-o', exported, '-q', ...args);
+      assert.deepEqual(Buffer.from(await scene.save(format, { args })), fs.readFileSync(exported), [format, ...args].join(' '));
+    }
 
     const plain = build('sponge', 64), compact = path.join(folder, 'compact.vdag');
     voxdag('convert', plain, '--compact', '-o', compact, '-q');

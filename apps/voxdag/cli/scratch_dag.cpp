@@ -1,7 +1,6 @@
 #include "cli/scratch_dag.hpp"
 
 #include <fcntl.h>
-#include <fmt/core.h>
 
 #include <cerrno>
 #include <filesystem>
@@ -18,7 +17,7 @@ ScratchDag::ScratchDag(const std::string& name, Session& session) {
   // AtomicFile writes to no descriptor that programs do not inherit.
   if (!file_.is_open() || fcntl(file_.get(), F_SETFD, 0) != 0)
     throw Error(folder.string(), "", "no temporary file: " + std::system_category().message(errno));
-  path_ = fmt::format("/proc/self/fd/{}", file_.get());
+  path_ = path_of_descriptor(file_.get()).string();
   session.scratch = path_;
   session.scratch_name = name;
 }

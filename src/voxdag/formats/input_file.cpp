@@ -29,10 +29,6 @@ namespace fs = std::filesystem;
 constexpr std::string_view kGzip = "\x1f\x8b", kZstd = "\x28\xb5\x2f\xfd";
 constexpr std::size_t kPartBytes = std::size_t{1} << 18;
 
-fs::path path_of(const Descriptor& descriptor) {
-  return "/proc/self/fd/" + std::to_string(descriptor.get());
-}
-
 /// A file in memory without a name.
 class MemoryFile {
  public:
@@ -84,12 +80,12 @@ void read_pipe(const fs::path& given, int from, MemoryFile& to) {
 
 /// Returns the path that opens the bytes of one of this process's descriptors: a copy of a pipe,
 /// which is read only once.
-fs::path path_of_descriptor(const fs::path& given, int descriptor, Work work) {
+fs::path path_of_input(const fs::path& given, int descriptor, Work work) {
   struct stat info {};
   if (::fstat(descriptor, &info) != 0)
     throw Error(given.string(), "", "cannot open: " + std::system_category().message(errno));
   if (!S_ISFIFO(info.st_mode) && !S_ISSOCK(info.st_mode))
-    return "/proc/self/fd/" + std::to_string(descriptor);
+    return path_of_descriptor(descriptor);
   static std::mutex mutex;
   static std::map<int, Descriptor> copies;
   const std::lock_guard lock(mutex);
@@ -105,7 +101,7 @@ fs::path path_of_descriptor(const fs::path& given, int descriptor, Work work) {
       throw;
     }
   }
-  return path_of(copy->second);
+  return path_of_descriptor(copy->second.get());
 }
 
 void unpack_gzip(const fs::path& given, std::string_view bytes, MemoryFile& to) {
@@ -138,7 +134,7 @@ void unpack_zstd(const fs::path& given, std::string_view bytes, MemoryFile& to) 
 
 InputFile::InputFile(const fs::path& given, Work work) : path_(given), name_(given) {
   const int descriptor = given == "-" ? STDIN_FILENO : resolve_output(given).descriptor;
-  if (descriptor >= 0) path_ = path_of_descriptor(given, descriptor, work);
+  if (descriptor >= 0) path_ = path_of_input(given, descriptor, work);
   is_in_memory_ = descriptor >= 0;
   std::error_code ignored;
   if (fs::is_directory(path_, ignored)) return;
@@ -160,7 +156,7 @@ InputFile::InputFile(const fs::path& given, Work work) : path_(given), name_(giv
   is_gzip ? unpack_gzip(given, packed.text(), memory) : unpack_zstd(given, packed.text(), memory);
   memory_ = std::move(memory.descriptor());
   reservation_ = std::move(memory.reservation());
-  path_ = path_of(memory_);
+  path_ = path_of_descriptor(memory_.get());
   is_in_memory_ = true;
 }
 

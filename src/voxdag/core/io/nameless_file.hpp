@@ -19,6 +19,9 @@ Descriptor open_scratch_file(const std::filesystem::path& folder);
 /// only if it `is_inherited`. Returns no descriptor, and sets errno, if that fails.
 Descriptor open_memory_file(bool is_inherited = false);
 
+/// Returns the path by which this process opens one of its open files again.
+std::filesystem::path path_of_descriptor(int descriptor);
+
 /// Returns another descriptor of the same open file, or none, with errno.
 Descriptor duplicate(int descriptor) noexcept;
 

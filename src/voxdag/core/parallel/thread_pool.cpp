@@ -1,6 +1,7 @@
 #include "voxdag/core/parallel/thread_pool.hpp"
 
 #include <algorithm>
+#include <system_error>
 
 namespace voxdag {
 
@@ -25,9 +26,14 @@ void ThreadPool::limit_threads(std::size_t count) {
   thread_count_.store(std::max<std::size_t>(1, count), std::memory_order_relaxed);
 }
 
-/// Called with mutex_ held.
+/// Called with mutex_ held. Where the system gives no more threads, those that there are do the work.
 void ThreadPool::start_workers() {
-  while (workers_.size() + 1 < thread_count()) workers_.emplace_back([this] { work(); });
+  try {
+    while (can_start_ && workers_.size() + 1 < thread_count())
+      workers_.emplace_back([this] { work(); });
+  } catch (const std::system_error&) {
+    can_start_ = false;
+  }
 }
 
 void ThreadPool::run(std::size_t count, std::size_t grain, const Chunk& chunk) {

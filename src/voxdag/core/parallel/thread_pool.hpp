@@ -55,6 +55,7 @@ class ThreadPool {
   std::vector<std::thread> workers_;
   std::size_t helping_ = 0;  ///< Workers that work on some loop.
   std::atomic<std::size_t> thread_count_;
+  bool can_start_ = true;  ///< More threads.
   bool ends_ = false;
 };
 

@@ -19,10 +19,15 @@ Descriptor open_scratch_file(const std::filesystem::path& folder) {
   return file;
 }
 
-// All files are in memory. This one keeps its name, by which /proc/self/fd finds it.
+// All files are in memory. This one keeps its name, by which path_of_descriptor() finds it.
 Descriptor open_memory_file(bool) {
   std::string name = "/tmp/.voxdag-XXXXXX";
   return Descriptor(mkstemp(name.data()));
+}
+
+// Files are not opened by /proc/self/fd, which only names them.
+std::filesystem::path path_of_descriptor(int descriptor) {
+  return std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(descriptor));
 }
 
 Descriptor duplicate(int descriptor) noexcept { return Descriptor(fcntl(descriptor, F_DUPFD, 0)); }

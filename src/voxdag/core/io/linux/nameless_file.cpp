@@ -44,6 +44,8 @@ Descriptor open_memory_file(bool is_inherited) {
   return Descriptor(memfd_create("voxdag", is_inherited ? 0 : MFD_CLOEXEC));
 }
 
+std::filesystem::path path_of_descriptor(int descriptor) { return OwnPath(descriptor).text; }
+
 Descriptor duplicate(int descriptor) noexcept {
   return Descriptor(fcntl(descriptor, F_DUPFD_CLOEXEC, 0));
 }

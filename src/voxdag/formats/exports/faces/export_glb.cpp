@@ -40,7 +40,7 @@ std::uint16_t linear16(std::uint8_t srgb) {
 std::string png_bytes(const ImageRgb8& image) {
   // AtomicFile writes to no descriptor that programs do not inherit.
   const Descriptor memory = open_memory_file(/*is_inherited=*/true);
-  const std::string path = "/proc/self/fd/" + std::to_string(memory.get());
+  const std::filesystem::path path = path_of_descriptor(memory.get());
   write_png(path, image);
   std::string bytes(MappedFile(path).text());
   bytes.resize((bytes.size() + 3) & ~std::size_t{3});
@@ -107,8 +107,8 @@ struct GlbPlan {
                           {"componentType", kFloat},
                           {"count", corners()},
                           {"type", "VEC3"},
-                          {"min", json_of(Vec3d(place(extent.bounds.lo)))},
-                          {"max", json_of(Vec3d(place(extent.bounds.hi)))}},
+                          {"min", json_of(place(extent.bounds.lo))},
+                          {"max", json_of(place(extent.bounds.hi))}},
                          {{"bufferView", 1},
                           {"componentType", kUnsignedInt},
                           {"count", 3 * extent.triangles},
@@ -134,7 +134,7 @@ struct GlbPlan {
     nlohmann::ordered_json node = {{"name", "voxels"}};
     if (!is_world) {
       node["translation"] = json_of(grid.to_world(Vec3d(origin)));
-      node["scale"] = json_of({side, side, side});
+      node["scale"] = json_of(Vec3d{side, side, side});
     }
     if (extent.triangles > 0) node["mesh"] = 0;
     node["extras"] = {{"grid",
@@ -145,7 +145,7 @@ struct GlbPlan {
     json["asset"] = {{"version", "2.0"}, {"generator", "voxdag"}};
     json["scene"] = 0;
     json["scenes"] = {{{"nodes", {0}}}};
-    json["nodes"] = {node};
+    json["nodes"] = nlohmann::ordered_json::array({node});  // {node} may be a copy of node.
     if (extent.triangles > 0) add_mesh(json);
     std::string text = json.dump();
     text.resize((text.size() + 3) & ~std::size_t{3}, ' ');

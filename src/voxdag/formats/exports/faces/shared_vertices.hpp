@@ -43,10 +43,10 @@ class SharedVertices {
   };
   struct Hash {
     std::size_t operator()(Vec3d p) const {
-      std::size_t hash = 0;
+      std::uint64_t hash = 0;
       for (int axis = 0; axis < 3; ++axis)
         hash = (hash ^ std::hash<double>{}(p[axis])) * 0x9E3779B97F4A7C15u;
-      return hash ^ hash >> 32;
+      return static_cast<std::size_t>(hash ^ hash >> 32);
     }
   };
 
