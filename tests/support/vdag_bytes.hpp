@@ -79,6 +79,7 @@ inline VdagChunkEntry find_entry(const std::string& bytes, std::uint32_t id) {
 inline void repair_checksums(std::string& bytes) {
   if (bytes.size() < sizeof(VdagHeader)) return;
   const auto header = peek<VdagHeader>(bytes, 0);
+  if (header.chunk_count > bytes.size() / sizeof(VdagChunkEntry)) return;
   const std::size_t table_end = entry_offset(header.chunk_count);
   if (table_end > bytes.size()) return;
   const auto checksum = [&](std::size_t offset, std::size_t length) {

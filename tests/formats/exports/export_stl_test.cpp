@@ -99,7 +99,7 @@ TEST(ExportStl, AFarGridHasALocalOriginAndTheOffsetIsSaid) {
   ASSERT_EQ(near.size(), far.size());
   for (std::size_t i = 0; i < near.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_EQ(far[i][c] + Vec3f(0.75f, 0.25f, 1.5f), near[i][c]);
+      EXPECT_EQ(far[i][c] + (Vec3f{0.75f, 0.25f, 1.5f}), near[i][c]);
   // The reader adds the offset.
   EXPECT_EQ(read_mesh(dir / "near.stl").origin, (Vec3d{}));
   EXPECT_EQ(read_mesh(dir / "far.stl").origin, (Vec3d{1000000.75, 0.25, 1.5}));

@@ -65,9 +65,10 @@ TEST(Export3mf, TrianglesHaveTheColorsOfTheirVoxels) {
         const Value8 color = scene.value(polygon.voxel);
         for (std::size_t i = 0; i < polygon.triangles.size(); ++i, ++at) {
           const Material& material = read.appearance.materials[read.mesh.triangle_materials[at]];
-          EXPECT_EQ(material.base_color, Vec3f(srgb_to_linear(static_cast<float>(color.x) / 255),
-                                               srgb_to_linear(static_cast<float>(color.y) / 255),
-                                               srgb_to_linear(static_cast<float>(color.z) / 255)));
+          EXPECT_EQ(material.base_color,
+                    (Vec3f{srgb_to_linear(static_cast<float>(color.x) / 255),
+                           srgb_to_linear(static_cast<float>(color.y) / 255),
+                           srgb_to_linear(static_cast<float>(color.z) / 255)}));
         }
       });
   EXPECT_EQ(at, read.mesh.triangles.size());

@@ -20,7 +20,7 @@ std::string npy(const std::string& dtype, bool is_fortran, const std::string& sh
   header.resize((header.size() + 10 + 64) / 64 * 64 - 11, ' ');
   header += '\n';
   std::string text("\x93NUMPY\x01\x00", 8);
-  append(text, header.size(), 2);
+  append(text, std::uint64_t{header.size()}, 2);
   return text + header + data;
 }
 std::string shape_of(Vec3i size) {

@@ -185,12 +185,12 @@ TEST_F(PcdPointsTest, ColoursMayBeThreeFields) {
          {Channel{'U', 1, 1}, {'U', 2, 257}, {'I', 4, 1}, {'F', 4, 1}, {'F', 8, 1 / 255.0}}) {
       PcdFile pcd = plain(kind);
       for (const char* const name : {"b", "g", "r"}) pcd.fields.push_back({name, type, size});
-      const std::string bytes = pcd_of(pcd, 2, [&](std::size_t i, const std::string& name, int) {
+      const auto value = [&, scale = scale](std::size_t i, const std::string& name, int) {
         if (name[0] >= 'x') return cloud.places[i][name[0] - 'x'];
         const Rgb8 c = cloud.colors[i];
         return scale * c[name == "r" ? 0 : name == "g" ? 1 : 2];
-      });
-      EXPECT_EQ(read(bytes), cloud) << kind << type << size;
+      };
+      EXPECT_EQ(read(pcd_of(pcd, 2, value)), cloud) << kind << type << size;
     }
   EXPECT_TRUE(read("FIELDS x y z r g\nPOINTS 1\nDATA ascii\n1 2 3 4 5\n").colors.empty());
   expect_error("FIELDS x y z r g b\nPOINTS 1\nDATA ascii\n1 2 3 4 5 red\n",

@@ -1,8 +1,6 @@
 #pragma once
 /// Checks that the tests of all readers of points share.
 #include <gtest/gtest.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include "support/brute_svdag.hpp"
 #include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
+#include "voxdag/core/io/nameless_file.hpp"
 #include "voxdag/formats/imports/import_voxels.hpp"
 
 namespace voxdag {
@@ -53,10 +52,9 @@ inline PointCloud random_cloud(int count, unsigned seed) {
 class PointFile : public testing::Test {
  protected:
   explicit PointFile(const std::string& ending)
-      : path_(dir_ / ("cloud" + ending)), memory_(memfd_create("cloud", 0)) {
-    std::filesystem::create_symlink("/proc/self/fd/" + std::to_string(memory_), path_);
+      : path_(dir_ / ("cloud" + ending)), memory_(open_memory_file()) {
+    std::filesystem::create_symlink(path_of_descriptor(memory_.get()), path_);
   }
-  ~PointFile() override { close(memory_); }
 
   PointCloud read(const std::string& bytes) const {
     write_text(path_, bytes);
@@ -124,7 +122,7 @@ class PointFile : public testing::Test {
   std::filesystem::path path_;  ///< A link to a file in memory, which is fast to write.
 
  private:
-  int memory_;
+  Descriptor memory_;
 };
 
 }  // namespace voxdag
