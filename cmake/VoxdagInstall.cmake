@@ -35,6 +35,7 @@ install(CODE "
 install(DIRECTORY ${PROJECT_BINARY_DIR}/installed_headers/voxdag DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 # The reader in one header, for programs without the library.
 install(FILES ${PROJECT_SOURCE_DIR}/include/voxdag.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders DESTINATION ${CMAKE_INSTALL_DATADIR}/voxdag COMPONENT dev)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 foreach(module voxdag_vdb voxdag_vdb_export voxdag_mpi)
   if(TARGET ${module})

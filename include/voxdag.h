@@ -153,6 +153,17 @@ typedef struct voxdag_hit {
 /// and VOXDAG_NO_FACE. O(cells on the way) time.
 int voxdag_cast(const voxdag_scene* scene, const voxdag_ray* ray, voxdag_hit* hit);
 
+/// A ray in the grid, for walks on other devices (shaders/). The section "Rays" explains it.
+typedef struct voxdag_grid_ray {
+  float origin[3], t_min;       ///< In [1,2], mirrored. The range of T.
+  float inverse[3], t_max;      ///< 1 / |component|; 2^32 on parallel axes.
+  uint32_t mirrored, parallel;  ///< Bit a: axis a is mirrored; the ray does not move along axis a.
+  double t_start, t_scale;      ///< The t of the ray in the world is t_start + t_scale * T.
+} voxdag_grid_ray;
+
+/// Converts a ray to the coordinates of the grid. Returns 0 if it misses the grid.
+int voxdag_enter_grid(const voxdag_scene* scene, const voxdag_ray* ray, voxdag_grid_ray* out);
+
 /// A walk through the voxels of a window. It may be paused, copied and given up at any time.
 typedef struct voxdag_walk {
   const voxdag_scene* scene;
@@ -196,7 +207,7 @@ int voxdag_walk_next(voxdag_walk* walk, int32_t voxel[3]);
 
 #if defined(__FAST_MATH__) || defined(_M_FP_FAST)
 #error "voxdag.h: compile without fast mathematics, which changes the voxels that rays hit"
-#elif defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#elif defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16  // 16: halves, too
 #error "voxdag.h: floats must have float precision; on 32-bit x86 use -msse2 -mfpmath=sse"
 #endif
 
@@ -1232,15 +1243,7 @@ int voxdag_contains_point(const voxdag_scene* scene, const double point[3]) {
 // once, it passes to the diagonal neighbour. Along an axis whose component is below 2^-32 of the
 // longest, it stays in the voxels of floor(origin).
 
-typedef struct vdag_grid_ray {
-  float origin[3], inverse[3];  // mirrored; 1 / |component|, 2^32 on parallel axes
-  float t_min, t_max;           // the range of T
-  uint32_t mirrored, parallel;  // bit a: axis a is mirrored; the ray does not move along axis a
-  double t_start, t_scale;      // the world's t is t_start + t_scale * T
-} vdag_grid_ray;
-
-// Converts a ray to the coordinates of the grid. Returns 0 if it misses the grid.
-static int vdag_enter_grid(const voxdag_scene* scene, const voxdag_ray* ray, vdag_grid_ray* out) {
+int voxdag_enter_grid(const voxdag_scene* scene, const voxdag_ray* ray, voxdag_grid_ray* out) {
   const double parallel = 2.3283064365386962890625e-10;           // 2^-32
   const double zero = vdag_double((uint64_t)(1023 - 960) << 52);  // 2^-960
   const double to_unit = 1.0 / vdag_product(scene->info.voxel_size, scene->info.resolution);
@@ -1312,8 +1315,9 @@ static int vdag_enter_grid(const voxdag_scene* scene, const voxdag_ray* ray, vda
 }
 
 // Sets `hit` to the voxel whose lower corner has these float bits, which the ray meets at T = t.
-static void vdag_set_hit(const voxdag_scene* scene, const voxdag_ray* ray, const vdag_grid_ray* in,
-                         float t, const uint32_t corner[3], voxdag_hit* hit) {
+static void vdag_set_hit(const voxdag_scene* scene, const voxdag_ray* ray,
+                         const voxdag_grid_ray* in, float t, const uint32_t corner[3],
+                         voxdag_hit* hit) {
   const int bit = 23 - scene->info.levels;
   for (int axis = 2; axis >= 0; --axis) {
     const int32_t low = (int32_t)((corner[axis] & 0x7FFFFF) >> bit);
@@ -1330,10 +1334,10 @@ static void vdag_set_hit(const voxdag_scene* scene, const voxdag_ray* ray, const
 }
 
 int voxdag_cast(const voxdag_scene* scene, const voxdag_ray* ray, voxdag_hit* hit) {
-  vdag_grid_ray in;
+  voxdag_grid_ray in;
   vdag_clear(hit, sizeof *hit);
   hit->face = VOXDAG_NO_FACE;
-  if (scene->leaf_count == 0 || !vdag_enter_grid(scene, ray, &in)) return 0;
+  if (scene->leaf_count == 0 || !voxdag_enter_grid(scene, ray, &in)) return 0;
   const float ox = in.origin[0], oy = in.origin[1], oz = in.origin[2];
   const float ix = in.inverse[0], iy = in.inverse[1], iz = in.inverse[2];
   float t = in.t_min;
@@ -1397,17 +1401,13 @@ int voxdag_cast(const voxdag_scene* scene, const voxdag_ray* ray, voxdag_hit* hi
     const uint32_t next_x = x - (step_x << bit), next_y = y - (step_y << bit);
     const uint32_t next_z = z - (step_z << bit);
     const uint32_t changed = (x ^ next_x) | (y ^ next_y) | (z ^ next_z);
-    x = next_x;
-    y = next_y;
-    z = next_z;
+    x = next_x, y = next_y, z = next_z;
     child ^= step_x | step_y << 1 | step_z << 2;
     if (changed >> bit == 1) continue;  // a sibling
     // POP: to the highest level at which the cell changed
     while (changed >> bit > 1) ++bit;
     if (bit > 22) return 0;  // the ray has left the grid
-    x &= ~0u << bit;
-    y &= ~0u << bit;
-    z &= ~0u << bit;
+    x &= ~0u << bit, y &= ~0u << bit, z &= ~0u << bit;
     child = (x >> bit & 1) | (y >> bit & 1) << 1 | (z >> bit & 1) << 2;
     if (23 - bit > leaf_level) {
       mask = octants;

@@ -27,6 +27,7 @@ command -v node >/dev/null || voxdag_test_packages+=(nodejs)
 voxdag_extended_packages=(
   libopenvdb-dev libnanovdb-dev libboost-dev  # .vdb and .nvdb volumes
   clang clang-tidy libclang-rt-14-dev
+  glslang-tools spirv-tools libvulkan-dev mesa-vulkan-drivers libglfw3-dev libopengl-dev libgl1-mesa-dri xvfb xauth  # shaders and their examples
 )
 
 # scripts/site.sh builds the program for browsers with these.

@@ -1,4 +1,5 @@
-# The tests of a build for browsers (preset wasm): the library's, under Node with the machine's files. Those that
+# The tests of a build for browsers (cmake --preset wasm -DVOXDAG_BUILD_TESTS=ON; cmake --build build/wasm --target
+# wasm_tests; ctest --test-dir build/wasm): the library's, under Node with the machine's files. Those that
 # need processes, mapped files or libraries that are left out are not among them.
 add_library(gtest STATIC EXCLUDE_FROM_ALL /usr/src/googletest/googletest/src/gtest-all.cc)
 target_include_directories(gtest SYSTEM PUBLIC /usr/src/googletest/googletest/include PRIVATE /usr/src/googletest/googletest)

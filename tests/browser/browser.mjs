@@ -10,8 +10,8 @@ const browsers = process.env.VOXDAG_BROWSER ? [process.env.VOXDAG_BROWSER] : Obj
 /** How long a browser may take to start, and a page for each step, on a machine that is busy. */
 const MOST_MS = 180_000;
 
-/** Starts a browser without a window. @param {string} name  chromium or firefox */
-export function launch(name) {
+/** Starts a browser without a window. @param {string} name  chromium or firefox @param {...string} more  options of Chromium */
+export function launch(name, ...more) {
   if (name === 'firefox')
     return puppeteer.launch({
       browser: 'firefox', executablePath: BROWSER_PATHS.firefox, headless: true, protocolTimeout: 300_000, timeout: MOST_MS,
@@ -21,7 +21,7 @@ export function launch(name) {
   return puppeteer.launch({
     executablePath: BROWSER_PATHS.chromium, headless: true, protocolTimeout: 300_000, timeout: MOST_MS,
     args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
-           '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+           '--use-angle=swiftshader', '--enable-unsafe-swiftshader', ...more],
   });
 }
 

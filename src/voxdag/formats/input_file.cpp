@@ -84,8 +84,7 @@ fs::path path_of_input(const fs::path& given, int descriptor, Work work) {
   struct stat info {};
   if (::fstat(descriptor, &info) != 0)
     throw Error(given.string(), "", "cannot open: " + std::system_category().message(errno));
-  if (!S_ISFIFO(info.st_mode) && !S_ISSOCK(info.st_mode))
-    return path_of_descriptor(descriptor);
+  if (!S_ISFIFO(info.st_mode) && !S_ISSOCK(info.st_mode)) return path_of_descriptor(descriptor);
   static std::mutex mutex;
   static std::map<int, Descriptor> copies;
   const std::lock_guard lock(mutex);

@@ -26,7 +26,8 @@ void ThreadPool::limit_threads(std::size_t count) {
   thread_count_.store(std::max<std::size_t>(1, count), std::memory_order_relaxed);
 }
 
-/// Called with mutex_ held. Where the system gives no more threads, those that there are do the work.
+/// Called with mutex_ held. Where the system gives no more threads, those that there are do the
+/// work.
 void ThreadPool::start_workers() {
   try {
     while (can_start_ && workers_.size() + 1 < thread_count())
