@@ -38,7 +38,7 @@ def setUpModule():
     FOLDER = tempfile.TemporaryDirectory()
     PATH = Path(FOLDER.name)
     for example in ("vulkan", "engine"):
-        run("cmake", "-S", SOURCES / "examples" / example, "-B", PATH / example, "-DCMAKE_BUILD_TYPE=Release")
+        run("cmake", "-G", "Ninja", "-S", SOURCES / "examples" / example, "-B", PATH / example, "-DCMAKE_BUILD_TYPE=Release")
         run("cmake", "--build", PATH / example)
 
 
