@@ -152,6 +152,7 @@ describeInBrowsers('editing', (name, browser) => {
     assert.ok(cut === null || cut.position[2] < 0.5 + 1e-6);
     assert.notEqual(await picture(page), painted);
     await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.set({ section: { plane: null } }));
+    await page.waitForFunction('!location.hash.includes("plane")');
 
     await openPanel(page);
     const saved = path.join(folder, `edited-${name}.vdag`), shown = await hits(page);
@@ -161,7 +162,7 @@ describeInBrowsers('editing', (name, browser) => {
     voxdag('verify', saved);
     // A page that is loaded again shows the edits.
     await page.reload();
-    await page.waitForFunction('window.voxdag?.viewer?.arrival?.memory?.version?.colors > 0');
+    await page.waitForFunction('window.voxdag?.viewer?.arrival?.memory?.version?.colors > 0 && window.voxdag.viewer.arrival.hasEnded');
     await page.evaluate((camera) => /** @type {any} */ (window).voxdag.viewer.set({ lod: 0, ground: false, exposure: 1, camera }), CAMERA);
     assert.equal(await hits(page), shown);
     assertNoComplaints(page);

@@ -51,7 +51,8 @@ describeInBrowsers('layout', (name, browser) => {
   it('shows every icon of the toolbar, large enough for a finger, on phones', async () => {
     for (const [width, height] of [[844, 390], [390, 844], [360, 640]]) {
       const page = await load(width, height);
-      await page.setViewport({ width, height, hasTouch: true, isMobile: name === 'chromium' });
+      await page.setViewport({ width, height, hasTouch: true, isMobile: name === 'chromium' });  // loads the page again
+      await page.waitForFunction(ready);
       const sizes = await page.$$eval('.toolbar button:not([hidden])', (buttons) => buttons.map((button) => {
         const { left, top, right, bottom } = button.getBoundingClientRect();
         return [left, top, innerWidth - right, innerHeight - bottom, right - left - 27, bottom - top - 27];
@@ -107,6 +108,7 @@ describeInBrowsers('layout', (name, browser) => {
     it('tells the name of an icon on a long press, without using it', async () => {
       const page = await load(844, 390);
       await page.setViewport({ width: 844, height: 390, hasTouch: true });
+      await page.waitForFunction(ready);
       const { x, y } = await page.$eval('button[aria-label="Light"]', (button) => {
         const { left: x, top: y } = button.getBoundingClientRect();
         return { x, y };

@@ -18,10 +18,11 @@ try {
   const { base, problem } = bakedSettings(), { settings, problems } = settingsFromHash(location.hash, base);
   if (problem) problems.unshift(problem);
   const query = new URLSearchParams(location.search), url = query.get('url'), empty = url !== null || hasNoScene();
+  // `voxdag view --edit` prints an address with a secret, and sends edit/. The program can edit, too. The page waits for
+  // edit/ here: nothing may wait between the viewer and the interface, which hears the viewer's first failure.
+  const secret = query.get('edit'), edits = secret !== null || hasProgram() ? await import('../edit/editing.js').catch(() => null) : null;
   const viewer = createViewer({ container: picture, settings, empty });
   const hands = new Hands(viewer);
-  // `voxdag view --edit` prints an address with a secret, and sends edit/. The program can edit, too.
-  const secret = query.get('edit'), edits = secret !== null || hasProgram() ? await import('../edit/editing.js').catch(() => null) : null;
   if (secret !== null && edits === null) problems.push('this page cannot edit: use the address that `voxdag view --edit` prints');
   const ui = createInterface(viewer, hands, container, base, edits && ((ui) => edits.makeEditing(ui, secret)));
   keepLink(ui, base);
