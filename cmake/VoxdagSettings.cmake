@@ -38,9 +38,10 @@ if(EMSCRIPTEN)
   set(VOXDAG_PIC OFF)
   string(REPLACE "-O3" "-O2" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
   # WebAssembly's own exceptions and vectors: Chromium 95, Firefox 100, Safari 16.4, Node 18 and later.
-  # LLVM 14 lets a store pass the load of a number that fills a vector, if both have the same address: means of
-  # colours were wrong. Its vectorizers make such loads; our own vectors do not store where they load.
-  add_compile_options(-fwasm-exceptions -msimd128 -fno-vectorize -fno-slp-vectorize)
+  add_compile_options(-fwasm-exceptions -msimd128)
+  foreach(language C CXX)
+    string(APPEND CMAKE_${language}_FLAGS " --em-config ${PROJECT_SOURCE_DIR}/cmake/wasm/emscripten.config -Wno-version-check")
+  endforeach()
   add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include ${PROJECT_SOURCE_DIR}/cmake/wasm/libcxx14.hpp>")
   add_link_options(-fwasm-exceptions)
 endif()

@@ -31,7 +31,7 @@ voxdag_extended_packages=(
 )
 
 # scripts/site.sh builds the program for browsers with these.
-voxdag_wasm_packages=(emscripten googletest)
+voxdag_wasm_packages=(emscripten googletest clang-16 lld-16 llvm-16)
 
 # scripts/release.sh makes the files of a release with these.
 voxdag_release_packages=(libopenvdb-dev libnanovdb-dev libboost-dev pybind11-dev python3-dev python3-numpy

@@ -56,8 +56,8 @@ options=(-DVOXDAG_EXTENDED_TESTS=OFF -DVOXDAG_BUILD_LAB=OFF -DVOXDAG_CUDA=OFF -D
 if [ "$extended" = yes ]; then
   echo "== the program for browsers"
   install_packages "${voxdag_wasm_packages[@]}"
-  cmake --preset wasm >/dev/null
-  cmake --build build/wasm --target voxdag_wasm -- -j "$jobs"
+  cmake --preset wasm -DVOXDAG_BUILD_TESTS=ON >/dev/null
+  cmake --build build/wasm --target voxdag_wasm wasm_tests -- -j "$jobs"
   options+=(-DVOXDAG_BROWSER_MODULE="$PWD/build/wasm/apps/wasm")
 fi
 echo "== g++"
@@ -113,6 +113,7 @@ fi
 echo "== tests"
 if [ "$extended" = yes ]; then
   run_tests release
+  ctest --test-dir build/wasm --output-on-failure --no-tests=error
 else
   run_tests release -LE extended
 fi

@@ -56,3 +56,8 @@ from_chars_result from_chars(const char* first, const char* last, float& value) 
 }
 
 }  // namespace std
+
+// LLVM 16 calls the program's main(int, char**) so; emscripten 3.1.6 looks for the name of C.
+extern "C" int __main_argc_argv(int, char**);
+int entry(int, char**) asm("main");
+int entry(int argc, char** argv) { return __main_argc_argv(argc, argv); }
