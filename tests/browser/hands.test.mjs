@@ -221,6 +221,12 @@ describeInBrowsers('hands', (_, browser) => {
   it('measures between picked points', async () => {
     const page = await load();
     await page.keyboard.press('m');
+    // The panel takes room from the picture, which has its new size a frame later.
+    await page.waitForFunction(() => {
+      const { width, height, clientWidth, clientHeight } = /** @type {HTMLCanvasElement} */ (document.querySelector('canvas'));
+      return clientWidth < innerWidth && Math.abs(width / height - clientWidth / clientHeight) < 0.01;
+    });
+    await drawn(page);
     const [a, b] = [await pick(page, 300, 320), await pick(page, 450, 330)];
     await page.mouse.click(300, 320);
     await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent?.startsWith('Click the second point'));
