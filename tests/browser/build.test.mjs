@@ -273,6 +273,64 @@ describeInBrowsers('build', (browserName, browser) => {
     server.close();
   });
 
+  it('takes an address, a pasted model, a dropped folder, and no file of 2 GB', async () => {
+    const server = await startSite(), site = path.join(folder, 'site/');
+    fs.writeFileSync(path.join(site, 'square.obj'), square(''));
+    const page = await open(browser(), `${server.url}?url=square.obj${QUICK}`, SIZE);
+    await shown(page, 'square.vdag');
+    await page.evaluate((/** @type {string} */ text) => {
+      const data = new DataTransfer();
+      data.items.add(new File([text], 'pasted.obj'));
+      window.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, bubbles: true }));
+    }, square(''));
+    await shown(page, 'pasted.vdag');
+
+    // A folder can only be dropped by a hand: Chromium's protocol has one.
+    if (browserName === 'chromium') {
+      const model = path.join(folder, 'model');
+      fs.mkdirSync(path.join(model, 'textures'), { recursive: true });
+      fs.writeFileSync(path.join(model, 'painted.obj'), square('mtllib square.mtl\n'));
+      fs.writeFileSync(path.join(model, 'square.mtl'), 'newmtl paint\nmap_Kd textures/paint.png\n');
+      fs.writeFileSync(path.join(model, 'textures/paint.png'), png());
+      const protocol = await page.createCDPSession(), data = { items: [], files: [model], dragOperationsMask: 1 };
+      for (const type of /** @type {const} */ (['dragEnter', 'dragOver', 'drop'])) await protocol.send('Input.dispatchDragEvent', { type, x: 120, y: 100, data });
+      assert.ok((await shown(page, 'painted.vdag')).hasColors);
+    }
+
+    const before = await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.file);
+    const large = path.join(folder, 'large.stl'), triangles = 44_000_000, head = Buffer.alloc(84);
+    head.writeUInt32LE(triangles, 80);
+    fs.writeFileSync(large, head);
+    fs.truncateSync(large, 84 + 50 * triangles);  // without blocks on the disk
+    await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('share'));
+    const chooser = /** @type {any} */ (await page.waitForSelector('.panel input[type=file]:not([webkitdirectory])'));
+    await chooser.uploadFile(large);
+    await message(page, 'large.stl');
+    assert.match(await page.evaluate(() => document.querySelector('.toast.error')?.textContent), /more than the memory of a page of the browser has left/);
+    assert.equal(await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.file), before, 'the scene before stays');
+    assertNoComplaints(page);
+
+    for (const [address, text] of [['none.obj', 'none.obj: the server answers 404'], ['http://127.0.0.1:9/a.obj', 'a page loads files of its own host only']]) {
+      const page = await open(browser(), `${server.url}?url=${address}${QUICK}`, SIZE);
+      await message(page, text);
+      await page.close();
+    }
+    await page.close();
+    server.close();
+  });
+
+  it('builds while another page is in front', async () => {
+    const server = await startSite(), page = await open(browser(), server.url + QUICK, { ...SIZE, ready: 'document.querySelector(".welcome")' });
+    const other = await browser().newPage();
+    await other.bringToFront();
+    await drop(page, { 'square.obj': square('') });
+    await shown(page, 'square.vdag');
+    await other.close();
+    assertNoComplaints(page);
+    await page.close();
+    server.close();
+  });
+
   it('builds and saves from disk, offline', async () => {
     const single = path.join(folder, 'voxdag.html');
     voxdag('export', '-o', single, '-q');
