@@ -35,7 +35,7 @@ class MemoryFile {
 std::unique_ptr<VoxelSource> open_chosen(std::uint8_t choice, const std::string& path) {
   std::optional<double> threshold;
   if (choice >= 128) threshold = 1.5;
-  switch (choice % 5) {
+  switch (choice % 7) {
     case 0:
       return open_vox(path);
     case 1:
@@ -44,6 +44,10 @@ std::unique_ptr<VoxelSource> open_chosen(std::uint8_t choice, const std::string&
       return open_npy(path, threshold);
     case 3:
       return open_nrrd(path, threshold);
+    case 4:
+      return open_schematic(path);
+    case 5:
+      return open_octomap(path, choice >= 128 ? std::optional(0.7) : std::nullopt);
     default:
       return open_nifti(path, threshold);
   }

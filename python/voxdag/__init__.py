@@ -35,7 +35,8 @@ for _name, _member in list(vars(Dag).items()):
         setattr(Dag, _name, _documented(getattr(Dag, _name)))
 
 #: Files that import_file() reads, and build_mesh() does not.
-_IMPORTED = (".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb", ".las", ".pcd", ".npy", ".binvox",
+_IMPORTED = (".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb", ".las", ".pcd", ".npy", ".binvox", ".schem",
+             ".schematic", ".litematic", ".nbt", ".bt", ".ot",
              ".nrrd", ".nhdr", ".nii", ".vdb", ".vox")
 
 

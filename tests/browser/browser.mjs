@@ -10,13 +10,14 @@ const browsers = process.env.VOXDAG_BROWSER ? [process.env.VOXDAG_BROWSER] : Obj
 /** How long a browser may take to start, and a page for each step, on a machine that is busy. */
 const MOST_MS = 180_000;
 
-/** Starts a browser without a window. @param {string} name  chromium or firefox @param {...string} more  options of Chromium */
+/** Starts a browser without a window. @param {string} name  chromium or firefox @param {...string} more  options of Chromium, NAME=NUMBER of Firefox's preferences */
 export function launch(name, ...more) {
   if (name === 'firefox')
     return puppeteer.launch({
       browser: 'firefox', executablePath: BROWSER_PATHS.firefox, headless: true, protocolTimeout: 300_000, timeout: MOST_MS,
       extraPrefsFirefox: { 'webgl.force-enabled': true, 'webgl.disable-fail-if-major-performance-caveat': true, 'network.proxy.type': 0,
-                          'security.sandbox.content.level': 0, 'gfx.webrender.software': true },
+                          'security.sandbox.content.level': 0, 'gfx.webrender.software': true,
+                          ...Object.fromEntries(more.map((text) => [text.split('=')[0], Number(text.split('=')[1])])) },
     });
   return puppeteer.launch({
     executablePath: BROWSER_PATHS.chromium, headless: true, protocolTimeout: 300_000, timeout: MOST_MS,

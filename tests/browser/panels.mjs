@@ -1,6 +1,6 @@
 /**
- * Takes pictures of every panel, to be looked at: node panels.mjs FILE.vdag OUT/ [panel...] ; VOXDAG names the program.
- * Each at four sizes, light and dark, in Chromium: OUT/panel-WIDTHxHEIGHT-scheme.png.
+ * Takes pictures of every panel, to be looked at: node panels.mjs FILE.vdag OUT/ [panel...] ; VOXDAG names the program, and
+ * VOXDAG_BROWSER the browser (chromium). Each at four sizes, light and dark: OUT/panel-WIDTHxHEIGHT-scheme.png.
  */
 import fs from 'node:fs';
 import path from 'node:path';
@@ -13,13 +13,15 @@ const PANELS = wanted.length > 0 ? wanted : ['none', 'view', 'light', 'section',
 const HASH = '#ao=0&shadows=off';
 
 fs.mkdirSync(out, { recursive: true });
-const server = await view(path.resolve(file)), browser = await launch('chromium');
-for (const [width, height] of SIZES)
-  for (const scheme of ['light', 'dark']) {
+const server = await view(path.resolve(file)), name = process.env.VOXDAG_BROWSER ?? 'chromium', isFirefox = name === 'firefox';
+for (const scheme of ['light', 'dark']) {
+  const browser = await launch(name, ...(isFirefox ? [`layout.css.prefers-color-scheme.content-override=${scheme === 'dark' ? 0 : 1}`] : []));
+  for (const [width, height] of SIZES) {
     const page = await browser.newPage(), isPhone = Math.min(width, height) < 500;
     page.setDefaultTimeout(180_000);
-    await page.setViewport({ width, height, isMobile: isPhone, hasTouch: isPhone });
-    await page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: scheme }]);
+    // Puppeteer cannot make a phone of Firefox: there it is a small window.
+    await page.setViewport(isFirefox ? { width, height } : { width, height, isMobile: isPhone, hasTouch: isPhone });
+    if (!isFirefox) await page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: scheme }]);
     await page.goto(server.url + HASH);
     await page.waitForFunction('window.voxdag?.viewer?.info && window.voxdag.hands.isLoaded');
     // What the panels list: a section, measures and notes.
@@ -44,6 +46,7 @@ for (const [width, height] of SIZES)
     }
     await page.close();
   }
-await browser.close();
+  await browser.close();
+}
 await server.close();
 process.exit(0);

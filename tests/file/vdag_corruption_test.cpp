@@ -2,6 +2,8 @@
 // checksums.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "support/damaged_bytes.hpp"
 #include "support/error_of.hpp"
 #include "support/vdag_bytes.hpp"
@@ -161,6 +163,8 @@ TEST(VdagCorruption, FaultsInTheDagAreNamed) {
             "chunk NODE: has 7 words, but the level table says 6");
   EXPECT_EQ(vdag_error_of(repaired_with(chunk_offset(bytes, 0), '[')),
             "chunk META, byte 8: not valid JSON");
+  EXPECT_EQ(vdag_error_of(repaired_with(chunk_offset(bytes, 0), std::array{'{', '}', '\0'})),
+            "chunk META, byte 3: not valid JSON");
 }
 
 }  // namespace

@@ -156,7 +156,8 @@ void add_import_command(const Command& program, Session& session) {
           "file", arguments->files, [](const std::string& text) { return text; }, "FILE...",
           "One file, several, a folder of them or a pattern. Points: .ply, .las, .pcd, .npy of N x "
           "3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. "
-          "Voxels: .vox, .binvox, or .npy of N x 3 integers. Volumes: .npy of X x Y x Z, .nrrd, "
+          "Voxels: .vox, .binvox, .schem, .schematic, .litematic, .nbt (Minecraft), .bt, .ot "
+          "(OctoMap), or .npy of N x 3 integers. Volumes: .npy of X x Y x Z, .nrrd, "
           ".nhdr, .nii, .vdb, or a folder of .png slices. Each of them may also be compressed "
           "(.gz, .zst). -: standard input")
       .required();

@@ -79,6 +79,9 @@ MetadataJson point_json(Vec3d v) { return MetadataJson::array({v.x, v.y, v.z}); 
 }  // namespace
 
 MetadataJson parse_metadata_json(std::string_view text) {
+  // The parser takes a zero for the end of the text.
+  if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
+    throw Error("", ErrorPlace::byte(zero + 1), "not valid JSON");
   try {
     return MetadataJson::parse(text);
   } catch (const MetadataJson::parse_error& error) {

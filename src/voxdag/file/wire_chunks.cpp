@@ -88,7 +88,7 @@ void decode(std::uint32_t id, const WireParts& parts, const wire::PagesTarget& t
 std::span<const std::byte> expand(std::uint32_t id, const WireParts& parts,
                                   std::unique_ptr<std::uint64_t[]>& memory) {
   const std::uint64_t words = parts.expanded_words();
-  memory = std::make_unique<std::uint64_t[]>(words);
+  memory = std::make_unique<std::uint64_t[]>(checked_size(words));
   // All kinds of pages have headers like this one.
   ValuePagesHeader header{};
   static_assert(offsetof(ValuePagesHeader, precision) == offsetof(MaterialIdsHeader, materials) &&

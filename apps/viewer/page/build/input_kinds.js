@@ -4,7 +4,7 @@
 /** The command that takes a file, and what its grid comes from: its voxels, or a resolution that a person chooses. */
 /** @typedef {'mesh' | 'points' | 'voxels' | 'volume'} Kind */
 
-const MESHES = /\.(obj|ply|stl|off|glb|gltf|3mf|dae|fbx)(\.gz|\.zst)?$/i, VOXELS = /\.(vox|binvox)(\.gz|\.zst)?$/i;
+const MESHES = /\.(obj|ply|stl|off|glb|gltf|3mf|dae|fbx)(\.gz|\.zst)?$/i, VOXELS = /\.(vox|binvox|schem|schematic|litematic|nbt|bt|ot)(\.gz|\.zst)?$/i;
 const VOLUMES = /\.(npy|nrrd|nhdr|nii|vdb)(\.gz|\.zst)?$/i, POINTS = /\.(las|pcd|xyz|xyzrgb|txt|csv|asc|pts)(\.gz|\.zst)?$/i;
 
 /** Returns which kind of input a name stands for; null: none. @param {string} name @returns {Kind | null} */

@@ -28,6 +28,14 @@ std::unique_ptr<VoxelSource> open_text(const Path& path, const Options&) {
   return open_xyz_points(path);
 }
 
+std::unique_ptr<VoxelSource> open_blocks(const Path& path, const Options&) {
+  return open_schematic(path);
+}
+
+std::unique_ptr<VoxelSource> open_map(const Path& path, const Options& options) {
+  return open_octomap(path, options.threshold);
+}
+
 constexpr SourceFormat kSourceFormats[] = {
     {".npy", true,
      [](const Path& path, const Options& options) { return open_npy(path, options.threshold); }},
@@ -54,6 +62,12 @@ constexpr SourceFormat kSourceFormats[] = {
        return open_vdb(path, options.threshold, options.grid);
      }},
     {".vox", false, [](const Path& path, const Options&) { return open_vox(path); }},
+    {".schem", false, open_blocks},
+    {".schematic", false, open_blocks},
+    {".litematic", false, open_blocks},
+    {".nbt", false, open_blocks},
+    {".bt", true, open_map},
+    {".ot", true, open_map},
 };
 
 /// Opens `path`, whose format the end of `name` tells.

@@ -72,4 +72,18 @@ std::unique_ptr<VoxelSource> open_vdb(const std::filesystem::path& path,
 /// them set the voxel. Format: see vox_file.hpp.
 std::unique_ptr<VoxelSource> open_vox(const std::filesystem::path& path);
 
+/// Opens blocks of Minecraft: a schematic of Sponge (.schem) or MCEdit (.schematic), regions of
+/// Litematica (.litematic), or a structure (.nbt); the contents tell which. All blocks but air set
+/// their voxels, with the colours of color_of_block(); those of MCEdit have numbers and no colours.
+/// A block keeps the coordinates of the file, less the least ones of its boxes, which are the
+/// origin of grid(); y is up; a block has size 1. Where regions overlap, all of them set the voxel.
+std::unique_ptr<VoxelSource> open_schematic(const std::filesystem::path& path);
+
+/// Opens a map of OctoMap: .bt, whose nodes are occupied or free, or .ot of the types OcTree and
+/// ColorOcTree. The cells of the leaves that are occupied set their voxels, with their colours if
+/// the map has some. In .ot, a leaf is occupied if its probability is at least the threshold
+/// (0.5 without one). The voxels are those of the map's resolution; z is up.
+std::unique_ptr<VoxelSource> open_octomap(const std::filesystem::path& path,
+                                          std::optional<double> threshold);
+
 }  // namespace voxdag

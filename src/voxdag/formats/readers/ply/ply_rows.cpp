@@ -2,10 +2,12 @@
 
 #include <string>
 
+#include "voxdag/core/checked_size.hpp"
+
 namespace voxdag {
 void resize_ply_vertices(const PlyBody& body, MemoryReservation& memory, Mesh& mesh) {
   memory.resize(body.source.options.counted(body.fields.vertex.count * sizeof(Vec3f)));
-  mesh.vertices.resize(body.fields.vertex.count);
+  mesh.vertices.resize(checked_size(body.fields.vertex.count));
   if (body.attributes != nullptr) body.attributes->resize_vertices(mesh.vertices.size());
 }
 
