@@ -59,7 +59,7 @@ MORE = {
                "cluster.md#pictures-and-benchmarks"],
     "view": ["viewer.md", "security.md#the-server-of-voxdag-view"],
     "trace": ["arrays.md#rays-and-hits", "compact.md#what-it-costs", "rendering.md#devices"],
-    "query": ["arrays.md#answers", "json.md#query"],
+    "query": ["contacts.md", "arrays.md#answers", "json.md#query"],
 }
 
 

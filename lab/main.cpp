@@ -14,5 +14,5 @@ int main(int argc, char** argv) {
             {add_bench_build_command, add_bench_conformance_command, add_bench_trace_command,
              add_bench_esvo_command, add_bench_esvo_rays_command, add_bench_compact_command,
              add_bench_compact_rays_command, add_bench_attributes_command, add_bench_edits_command,
-             add_bench_papers_command, add_bench_untrusted_command}}}});
+             add_bench_contacts_command, add_bench_papers_command, add_bench_untrusted_command}}}});
 }

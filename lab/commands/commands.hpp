@@ -14,6 +14,7 @@ void add_bench_attributes_command(const Command& program, Session& session);
 void add_bench_compact_command(const Command& program, Session& session);
 void add_bench_compact_rays_command(const Command& program, Session& session);
 void add_bench_papers_command(const Command& program, Session& session);
+void add_bench_contacts_command(const Command& program, Session& session);
 void add_bench_edits_command(const Command& program, Session& session);
 void add_bench_untrusted_command(const Command& program, Session& session);
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "voxdag/algebra/contact/contacts.hpp"
 #include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/cpu/presentation.hpp"
 #include "voxdag/edit/editable_dag.hpp"
@@ -45,6 +46,7 @@ class Dag {
     return *scene_;
   }
   SceneParts parts() const { return {grid(), scene(), look(), model_.metadata().presentation}; }
+  ContactScene contacts() const { return {view(), grid()}; }
 
  private:
   DagModel model_;
@@ -65,6 +67,7 @@ class Snapshot {
   SceneParts parts() const {
     return {base_->grid(), scene_, snapshot_.values(), base_->model().metadata().presentation};
   }
+  ContactScene contacts() const { return {snapshot_.view(), base_->grid()}; }
 
  private:
   DagPointer base_;
@@ -93,6 +96,8 @@ void warn(const std::string& text);
 void add_makers(pybind11::module_& module);
 void add_rays(DagClass& dag);
 void add_rays(SnapshotClass& snapshot);
+void add_contacts(DagClass& dag);
+void add_contacts(SnapshotClass& snapshot);
 void add_queries(DagClass& dag);
 void add_edits(DagClass& dag);
 void add_exports(DagClass& dag);

@@ -164,6 +164,7 @@ void add_live_edits(py::module_& module) {
                          "One version of a DAG that is being edited. It stays as it is while edits "
                          "go on, and takes no time to make.");
   add_rays(snapshot);
+  add_contacts(snapshot);
   add_pictures(snapshot);
 }
 

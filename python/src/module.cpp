@@ -107,6 +107,7 @@ formats, and pages.)")
   module.attr("__version__") = written_by().substr(std::string("voxdag ").size());
   add_makers(module);
   add_rays(dag);
+  add_contacts(dag);
   add_queries(dag);
   add_edits(dag);
   add_exports(dag);

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "sponge.hpp"
+#include "voxdag/algebra/contact/contacts.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/file/vdag_file.hpp"
 
@@ -211,6 +212,97 @@ TEST_F(Query, SignedDistancesOfTheGridAreNegativeInVoxels) {
         EXPECT_EQ(
             value_at<float>(rows[z], 4 * (side * y + x)) < 0,
             voxels().count({static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)}) != 0);
+}
+
+TEST_F(Query, ContactsAreThoseOfTheLibrary) {
+  const VdagFile file(path("in.vdag"));
+  const ContactScene scene{file.view(), file.grid()};
+  std::mt19937 rng(6);
+  std::uniform_real_distribution<float> part(-0.2f, 1.2f);
+  const auto side = static_cast<float>(file.grid().side());
+  std::vector<float> spheres, moves, capsules, points, boxes;
+  constexpr std::size_t kCount = 200;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    float p[6];
+    for (int k = 0; k < 6; ++k)
+      p[k] = static_cast<float>(file.grid().origin[k % 3]) + part(rng) * side;
+    const float radius = part(rng) < 0.5f ? 0 : 0.05f * side;
+    spheres.insert(spheres.end(), {p[0], p[1], p[2], radius});
+    moves.insert(moves.end(), {p[0], p[1], p[2], radius, p[3] - p[0], p[4] - p[1], p[5] - p[2]});
+    capsules.insert(capsules.end(), {p[0], p[1], p[2], p[3], p[4], p[5], radius});
+    points.insert(points.end(), {p[0], p[1], p[2]});
+    boxes.insert(boxes.end(), {p[0], p[1], p[2], 0.1f * side, 0.05f * side, radius, 0, 0, 3, 4});
+  }
+  write_rows("spheres.npy", 4, spheres);
+  write_rows("moves.npy", 7, moves);
+  write_rows("capsules.npy", 7, capsules);
+  write_rows("places.npy", 3, points);
+  write_rows("boxes.npy", 10, boxes);
+  const auto ask = [](const char* kind, const char* rows, const char* dtype, std::size_t bytes) {
+    EXPECT_EQ(query({kind, path(rows), "-o", path("contacts.npy")}).status, 0) << kind;
+    return rows_of("contacts.npy", dtype, {}, bytes);
+  };
+  const auto vec = [](const std::vector<float>& from, std::size_t at) {
+    return static_cast<Vec3d>(Vec3f{from[at], from[at + 1], from[at + 2]});
+  };
+  const auto touches = ask("--overlap", "spheres.npy", "|b1", 1);
+  const auto capsule_touches = ask("--overlap", "capsules.npy", "|b1", 1);
+  const auto box_touches = ask("--overlap", "boxes.npy", "|b1", 1);
+  const auto hits = ask("--sweep", "moves.npy",
+                        "[('hit', '|b1'), ('t', '<f8'), ('voxel', '<i4', (3,)), ('point', '<f8', "
+                        "(3,)), ('normal', '<f8', (3,))]",
+                        69);
+  const auto near = ask("--closest", "capsules.npy",
+                        "[('distance', '<f8'), ('voxel', '<i4', (3,)), ('point', '<f8', (3,)), "
+                        "('normal', '<f8', (3,))]",
+                        68);
+  const auto distances = ask("--signed-distances", "places.npy",
+                             "[('distance', '<f8'), ('gradient', '<f8', (3,))]", 32);
+  ASSERT_EQ(distances.size(), kCount);
+  int touched = 0;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const Vec3d p = vec(points, 3 * i);
+    const Capsule sphere = Capsule::sphere(p, static_cast<double>(spheres[4 * i + 3]));
+    const Capsule capsule{p, vec(capsules, 7 * i + 3), sphere.radius};
+    OrientedBox box{p, vec(boxes, 10 * i + 3)};
+    box.axes[0] = {0.28, 0.96, 0};  // Turned by the quaternion (0, 0, 3, 4).
+    box.axes[1] = {-0.96, 0.28, 0};
+    EXPECT_EQ(value_at<bool>(touches[i], 0), overlaps(scene, sphere));
+    EXPECT_EQ(value_at<bool>(capsule_touches[i], 0), overlaps(scene, capsule));
+    EXPECT_EQ(value_at<bool>(box_touches[i], 0), overlaps(scene, box));
+    touched += value_at<bool>(box_touches[i], 0) ? 1 : 0;
+    const SweepHit hit = sweep(scene, sphere, vec(moves, 7 * i + 4));
+    EXPECT_EQ(value_at<bool>(hits[i], 0), hit.hit);
+    EXPECT_EQ(value_at<double>(hits[i], 1), hit.t);
+    EXPECT_EQ(value_at<Vec3i>(hits[i], 9), hit.voxel);
+    EXPECT_EQ(value_at<Vec3d>(hits[i], 21), hit.point);
+    EXPECT_EQ(value_at<Vec3d>(hits[i], 45), hit.normal);
+    const ClosestVoxel one = closest(scene, capsule);
+    EXPECT_EQ(value_at<double>(near[i], 0), one.distance);
+    EXPECT_EQ(value_at<Vec3i>(near[i], 8), one.voxel);
+    EXPECT_EQ(value_at<Vec3d>(near[i], 44), one.normal);
+    const SignedDistance distance = signed_distance(scene, p);
+    EXPECT_EQ(value_at<double>(distances[i], 0), distance.distance);
+    EXPECT_EQ(value_at<Vec3d>(distances[i], 8), distance.gradient);
+  }
+  EXPECT_GT(touched, 0);
+  ASSERT_EQ(
+      query({"--closest", path("places.npy"), "--within", "1e-3", "-o", path("few.npy")}).status,
+      0);
+
+  spheres[4 * 7 + 3] = -1;
+  write_rows("bad.npy", 4, spheres);
+  expect_failure(query({"--overlap", path("bad.npy"), "-o", path("out.npy")}), 1,
+                 "bad.npy: shape 7: the radius is negative");
+  boxes[10 * 3 + 8] = boxes[10 * 3 + 9] = 0;
+  write_rows("bad.npy", 10, boxes);
+  expect_failure(query({"--overlap", path("bad.npy"), "-o", path("out.npy")}), 1,
+                 "bad.npy: shape 3: the quaternion of the turn has no length");
+  expect_failure(query({"--sweep", path("spheres.npy"), "-o", path("out.npy")}), 1,
+                 "with 7 or 10 columns");
+  expect_failure(query({"--overlap", path("spheres.npy"), "--within", "1", "-o", path("out.npy")}),
+                 2, "--within");
+  EXPECT_EQ(files_like("out"), 0);
 }
 
 TEST_F(Query, WrongQuestionsAreRefused) {

@@ -31,6 +31,11 @@ if(NOT out MATCHES "undo gave the snapshot: yes")
   message(FATAL_ERROR "the example prints something else:\n${out}")
 endif()
 run(${WORK_DIR}/prefix/bin/voxdag verify ${WORK_DIR}/edited.vdag)
+run(${WORK_DIR}/build/character)
+# Eight stairs of 20 cm lead from 1 m to 2.6 m, and the wall at 9 m stops a radius of 0.3 m.
+if(NOT out MATCHES "6 s: stands at 8\\.(69|70), 8\\.00, 2\\.6")
+  message(FATAL_ERROR "the example prints something else:\n${out}")
+endif()
 
 # Every public header compiles in a project that uses only the installed files.
 file(STRINGS ${SOURCE_DIR}/cmake/public_headers.txt headers REGEX "^[a-z]")

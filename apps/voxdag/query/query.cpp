@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,6 +14,8 @@
 #include "cli/parse.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/usage_error.hpp"
+#include "query/answer_rows.hpp"
+#include "query/contacts.hpp"
 #include "query/thickness.hpp"
 #include "query/write_box.hpp"
 #include "voxdag/algebra/crop.hpp"
@@ -40,49 +41,13 @@ namespace {
 struct QueryArguments {
   SceneInput input;
   std::string points, segments, output;
+  ContactArguments contacts;
   bool count = false, distances = false, is_signed = false, area = false, from_low = false;
   std::optional<int> heights;  ///< Axis.
   std::optional<Box3i> window;
   ThicknessArguments thickness;
   std::uint64_t memory_limit = 0;
 };
-
-/// A batch of rows in memory at a time.
-constexpr std::size_t kPointsPerBatch = std::size_t{1} << 18;
-
-/// Appends the bytes of a value to a row.
-template <class T>
-std::byte* store_value(std::byte* at, const T& value) {
-  std::memcpy(at, &value, sizeof value);
-  return at + sizeof value;
-}
-
-/// Reads rows of `columns` floats or doubles, and writes rows of `row_bytes` bytes, a batch at a
-/// time: answer(numbers of all rows, number of rows, output).
-template <class Answer>
-std::uint64_t answer_rows(const std::string& input, std::uint64_t columns,
-                          const std::string& output, const std::string& dtype,
-                          std::size_t row_bytes, Session& session, const Answer& answer) {
-  NpyReader reader(input, {columns});
-  NpyWriter writer(output, dtype, {}, row_bytes, reader.rows());
-  const auto most =
-      static_cast<std::size_t>(std::min<std::uint64_t>(kPointsPerBatch, reader.rows()));
-  std::vector<double> values(most * columns);
-  std::vector<float> floats(reader.has_doubles() ? 0 : values.size());
-  std::vector<std::byte> rows(most * row_bytes);
-  void* const out = reader.has_doubles() ? static_cast<void*>(values.data()) : floats.data();
-  while (const std::size_t count = reader.read_rows(out, most)) {
-    std::copy(floats.begin(), floats.end(), values.begin());
-    session.progress.throw_if_cancelled();
-    answer(values, count, rows);
-    writer.write_rows(rows.data(), count);
-    session.progress.report(
-        "query", static_cast<double>(writer.rows_written()) / static_cast<double>(reader.rows()),
-        writer.rows_written());
-  }
-  writer.commit();
-  return reader.rows();
-}
 
 std::string answer_points(const QueryArguments& arguments, const DagModel& file, Session& session) {
   constexpr std::size_t kBytes = 29;
@@ -242,25 +207,28 @@ void query(const QueryArguments& arguments, Session& session) {
   if (arguments.thickness.is_asked)
     return answer_thickness(arguments.thickness, arguments.output, arguments.window, file, memory,
                             session);
-  const std::string done = !arguments.points.empty()     ? answer_points(arguments, file, session)
-                           : !arguments.segments.empty() ? answer_segments(arguments, file, session)
-                           : arguments.distances ? write_distances(arguments, file, memory, session)
-                                                 : write_heights(arguments, file, memory, session);
+  const std::string done =
+      !arguments.points.empty()     ? answer_points(arguments, file, session)
+      : !arguments.segments.empty() ? answer_segments(arguments, file, session)
+      : arguments.contacts.is_asked()
+          ? answer_contacts(arguments.contacts, arguments.output, file, session)
+      : arguments.distances ? write_distances(arguments, file, memory, session)
+                            : write_heights(arguments, file, memory, session);
   session.bar.clear();
   if (!session.quiet) fmt::print("{}: {}\n", arguments.output, done);
 }
 
 void check_query_arguments(const QueryArguments& arguments, Session& session) {
   const bool writes = !arguments.points.empty() || !arguments.segments.empty() ||
-                      arguments.distances || arguments.heights;
+                      arguments.contacts.is_asked() || arguments.distances || arguments.heights;
   if (!writes && !arguments.count && !arguments.area && !arguments.thickness.is_asked)
     throw UsageError(
-        "one of --points, --segments, --distances, --heights, --thickness, --count and --area is "
-        "required");
+        "one of --points, --segments, --overlap, --sweep, --closest, --signed-distances, "
+        "--distances, --heights, --thickness, --count and --area is required");
   if (writes && arguments.output.empty()) throw UsageError("--output", "is required");
   if (!writes && !arguments.output.empty() && !arguments.thickness.is_asked)
     throw UsageError("--output", "has no effect: the answer is printed");
-  session.inputs = {arguments.points, arguments.segments};
+  session.inputs = {arguments.points, arguments.segments, arguments.contacts.rows()};
   check_distinct({{"--output", arguments.output}}, session);
 }
 
@@ -272,15 +240,16 @@ void add_query_command(const Command& program, Session& session) {
       program.add("query", "Answer questions about the voxels of a DAG",
                   "voxdag query scene.vdag --points points.npy -o answers.npy\n"
                   "  voxdag query scene.vdag --segments segments.npy -o sight.npy\n"
+                  "  voxdag query scene.vdag --sweep moves.npy -o contacts.npy\n"
                   "  voxdag query scene.vdag --heights y -o heights.npy\n"
                   "  voxdag query scene.vdag --count --window "
                   "0,0,0,4096,4096,4096\n"
                   "  voxdag query scene.vdag --area\n"
                   "  voxdag query part.stl --area -r 512\n"
                   "  voxdag query solid.vdag --thickness --thinner 1mm -o thin.npy\n\n"
-                  "Each call answers one kind of question. All answers are "
-                  "exact. Distances are computed in double precision and rounded "
-                  "to float32.");
+                  "Each call answers one kind of question. All answers are exact. Distances are "
+                  "computed in double precision; those of --points, --distances and --thickness "
+                  "are rounded to float32.");
   add_scene_input(command, arguments->input, session, "The .vdag file, in either form");
   std::vector<Option> kinds;
   const auto add = [&kinds](Option option) {
@@ -296,6 +265,7 @@ void add_query_command(const Command& program, Session& session) {
       "--segments", arguments->segments, "S.npy",
       "For each segment (N x 6 float32 or float64, from and to): whether it meets no voxel, and "
       "the first voxel that it meets"));
+  add_contact_options(command, arguments->contacts, add);
   const Option distances = add(
       command.flag("--distances", arguments->distances,
                    "For each place of --window, or of the grid: the distance of its centre to the "

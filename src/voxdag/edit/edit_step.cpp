@@ -8,6 +8,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/printable.hpp"
+#include "voxdag/core/quaternion.hpp"
 
 namespace voxdag {
 namespace {
@@ -45,13 +46,8 @@ void check_order(Vec3d lo, Vec3d hi) {
 }
 
 EditShape turned_box(const Grid& grid, std::span<const double> numbers) {
-  double x = numbers[6], y = numbers[7], z = numbers[8], w = numbers[9];
-  const double size = std::sqrt(x * x + y * y + z * z + w * w);
-  if (!(size > 0) || !std::isfinite(size)) throw Error("the quaternion of the turn has no length");
-  x /= size, y /= size, z /= size, w /= size;
-  const Vec3d axes[3] = {{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},
-                         {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
-                         {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}};
+  const auto turned = turned_axes(numbers[6], numbers[7], numbers[8], numbers[9]);
+  const Vec3d axes[3] = {turned[0], turned[1], turned[2]};
   return make_turned_box(grid, vec3(numbers, 0), vec3(numbers, 3), axes);
 }
 
