@@ -45,9 +45,10 @@ refused and writes nothing.
 MORE = {
     "scene": ["scenes.md"],
     "build": ["meshes.md", "attributes.md", "esvo.md", "solid.md", "compact.md", "cluster.md", "json.md#build", "security.md"],
-    "import": ["import.md", "json.md#import"],
+    "import": ["import.md", "splats.md", "json.md#import"],
     "convert": ["compact.md", "attributes.md#coarser-grids"],
     "coarsen": ["attributes.md#coarser-grids"],
+    "carve": ["splats.md"],
     "combine": ["algebra.md"],
     "edit": ["editing.md"],
     "diff": ["json.md#diff"],

@@ -14,11 +14,15 @@
 namespace {
 
 using Open = std::unique_ptr<voxdag::VoxelSource> (*)(const std::filesystem::path&);
-constexpr Open kReaders[] = {voxdag::open_ply_points, voxdag::open_las_points,
-                             voxdag::open_pcd_points, voxdag::open_xyz_points,
-                             [](const std::filesystem::path& path) {
-                               return voxdag::open_npy_points(path, voxdag::read_npy_start(path));
-                             }};
+constexpr Open kReaders[] = {
+    [](const std::filesystem::path& path) { return voxdag::open_ply_points(path); },
+    voxdag::open_las_points,
+    voxdag::open_pcd_points,
+    voxdag::open_xyz_points,
+    [](const std::filesystem::path& path) {
+      return voxdag::open_npy_points(path, voxdag::read_npy_start(path));
+    },
+    [](const std::filesystem::path& path) { return voxdag::open_splat_file(path); }};
 
 /// A file in memory.
 class MemoryFile {
@@ -46,6 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     source->visit_all([&](const voxdag::VoxelBatch& batch) {
       points += batch.places.size();
       if (batch.colors.size() != (source->has_colors() ? batch.places.size() : 0)) abort();
+      if (batch.splats.size() != (source->has_splats() ? batch.places.size() : 0)) abort();
     });
     // No format holds a point in less than three bytes, compressed by at most 88.
     if (points > 88 * size / 3) abort();

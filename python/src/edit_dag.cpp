@@ -10,6 +10,7 @@
 #include "arrays.hpp"
 #include "dag.hpp"
 #include "run_work.hpp"
+#include "voxdag/algebra/carve.hpp"
 #include "voxdag/algebra/coarsen.hpp"
 #include "voxdag/algebra/components.hpp"
 #include "voxdag/algebra/crop.hpp"
@@ -21,6 +22,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/model/aligned_models.hpp"
 #include "voxdag/file/model/edited.hpp"
+#include "voxdag/formats/exports/export_scene.hpp"
 #include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
 
@@ -130,6 +132,26 @@ DagPointer hollowed(const Dag& dag, double wall, const std::vector<std::array<do
   }
   return run_work([&](Work work) {
     return edited_dag(dag, hollow(dag.view(), wall / grid.voxel_size, holes, work), "hollow", work);
+  });
+}
+
+DagPointer carved(const Dag& dag, const std::array<double, 3>& from,
+                  const std::array<double, 2>& capsule, const std::optional<std::string>& up,
+                  bool solid) {
+  const auto [height, radius] = capsule;
+  if (!(height > 0 && radius >= 0) || !std::isfinite(height) || !std::isfinite(radius))
+    throw py::value_error("capsule must be a height above 0 and a radius of 0 or more");
+  const Vec3d at{from[0], from[1], from[2]};
+  if (!is_finite(at)) throw py::value_error("start must be finite");
+  const Grid& grid = dag.grid();
+  const int axis =
+      axis_of(up.value_or(std::string(1, up_of(dag.model().metadata()).value_or('y'))));
+  const Vec3i half = half_of_capsule(height, radius, axis, grid.voxel_size);
+  return run_work([&](Work work) {
+    return edited_dag(dag,
+                      carve(dag.view(), voxel_at(grid, at), half,
+                            solid ? CarveForm::kSolid : CarveForm::kWall, work),
+                      "carved", work);
   });
 }
 
@@ -304,6 +326,14 @@ place is at most this; distance_field(signed=True) shows the distances.
 drains: (N, 4), x, y, z and radius of round holes, in world units, from a point on the surface to the
 nearest voxel that was removed.
 Raises ValueError if no voxel is deeper than the wall, or if a drain does not open the cavity.)")
+      .def("carve", &carved, py::arg("start"), py::arg("capsule"), py::kw_only(),
+           py::arg("up") = py::none(), py::arg("solid") = false,
+           R"(Keeps the walls of the space that an upright capsule can reach.
+
+start: (x, y, z), where its middle begins; capsule: (height, radius); in world units.
+up: the axis of the capsule, "x", "y" or "z"; default: the one that is up in the file, else y.
+solid: fill the box of the space, not only a wall of one voxel.
+Raises ValueError if voxels are in the way of the capsule at its start.)")
       .def(
           "fill_cavities",
           [](const Dag& d, const GivenColor& color, std::optional<std::uint16_t> material) {

@@ -216,6 +216,9 @@ DagPointer import_source(const VoxelSource& source, const ImportOptions& options
   if (imported.not_finite > 0)
     warnings.push_back(std::to_string(imported.not_finite) +
                        " points left out: a coordinate is not finite");
+  if (imported.too_large > 0)
+    warnings.push_back(std::to_string(imported.too_large) +
+                       " splats left out: they are larger than max_scale");
   Presentation presentation;
   presentation.cubes = !source.has_points();
   imported.model.set_presentation(presentation);
@@ -304,7 +307,14 @@ DagPointer from_dense(const ArrayLike& given, std::optional<std::int64_t> resolu
 DagPointer import_file(const std::filesystem::path& path, std::optional<std::int64_t> resolution,
                        const std::optional<double>& pitch, const std::optional<Point>& origin,
                        const std::optional<Bounds>& bounds, const std::optional<double>& threshold,
-                       const std::string& grid, bool colors) {
+                       const std::string& grid, bool colors, const std::optional<double>& opacity,
+                       const std::optional<double>& min_scale,
+                       const std::optional<double>& max_scale, bool points) {
+  if (opacity && !(*opacity > 0 && *opacity < 1))
+    throw py::value_error("opacity must be above 0 and below 1");
+  for (const auto& [scale, name] : {std::pair(min_scale, "min_scale"), {max_scale, "max_scale"}})
+    if (scale && !(*scale > 0 && std::isfinite(*scale)))
+      throw py::value_error(std::string(name) + " must be positive");
   ImportOptions options = options_of_voxels(resolution, pitch, origin);
   if (bounds) {
     const auto& [lo, hi] = *bounds;
@@ -312,12 +322,16 @@ DagPointer import_file(const std::filesystem::path& path, std::optional<std::int
   }
   options.colors = colors;
   options.color_bound = std::nullopt;  // That of `voxdag import`.
+  options.splats = {opacity, min_scale, max_scale};
   std::vector<std::string> warnings;
   DagPointer dag = run_work([&](Work work) {
     return with_file_name(path.string(), [&] {
-      const std::unique_ptr<VoxelSource> source = open_voxel_source(
-          path,
-          {.threshold = threshold, .use_placement = !pitch && !origin, .grid = grid, .work = work});
+      const std::unique_ptr<VoxelSource> source =
+          open_voxel_source(path, {.threshold = threshold,
+                                   .use_placement = !pitch && !origin,
+                                   .grid = grid,
+                                   .splats_are_points = points,
+                                   .work = work});
       warnings = source->warnings();
       check_grid_options(*source, options);
       return import_source(*source, options, path.filename().string(), work, warnings);
@@ -372,7 +386,8 @@ resolution, pitch, origin: as for from_coords().)");
   module.def("import_file", &import_file, py::arg("path"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("origin") = none,
              py::arg("bounds") = none, py::arg("threshold") = none, py::arg("grid") = "",
-             py::arg("colors") = true,
+             py::arg("colors") = true, py::arg("opacity") = none, py::arg("min_scale") = none,
+             py::arg("max_scale") = none, py::arg("points") = false,
              R"(Reads a file of points, voxels or a volume, as `voxdag import` does.
 
 path: .vox, .las, .ply, .nrrd, .npy and others (docs/import.md).
@@ -382,6 +397,8 @@ holds; both in world units.
 threshold: for volumes, the least value that sets a voxel.
 grid: the name of a grid of a .vdb file.
 colors: also read colours, if there are some.
+opacity, min_scale, max_scale: how Gaussian splats set voxels (docs/splats.md).
+points: read the centres of splats as points.
 Raises OSError if the file cannot be read; what the file holds and is left out becomes a warning.)");
 }
 

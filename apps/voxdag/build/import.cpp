@@ -34,6 +34,7 @@ struct ImportArguments {
   ImportOptions options;
   std::string format, grid;         ///< As in VoxelSourceOptions.
   std::optional<double> threshold;  ///< For volumes.
+  bool splats_are_points = false;
   bool is_grey = false;
   bool compact = false;
   std::uint64_t memory_limit = 0;
@@ -54,9 +55,9 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
   std::vector<std::unique_ptr<VoxelSource>> sources;
   for (const std::string& file : arguments.files)
     with_file_name(file, [&] {
-      std::unique_ptr<VoxelSource> source =
-          open_voxel_source(file, {arguments.threshold, !options.voxel_size && !options.origin,
-                                   arguments.format, arguments.grid, work});
+      std::unique_ptr<VoxelSource> source = open_voxel_source(
+          file, {arguments.threshold, !options.voxel_size && !options.origin, arguments.format,
+                 arguments.grid, arguments.splats_are_points, work});
       print_warnings(warnings_of(*source, file), session);
       if (source->has_points() && !source->grid() && !options.resolution && !options.voxel_size)
         options.resolution = kDefaultResolution;
@@ -88,10 +89,27 @@ std::vector<std::string> files_of(const std::vector<std::string>& arguments) {
         !files_in(argument, {".png"}).empty()
             ? std::vector{argument}
             : expand_inputs({argument}, {".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb", ".ply",
-                                         ".las", ".pcd", ".npy"});
+                                         ".splat", ".las", ".pcd", ".npy"});
     files.insert(files.end(), of_argument.begin(), of_argument.end());
   }
   return files;
+}
+
+double parse_opacity(const std::string& text) {
+  const double opacity = parse_finite(text);
+  if (!(opacity > 0 && opacity < 1)) throw std::invalid_argument("must be above 0 and below 1");
+  return opacity;
+}
+
+/// Returns the line of the summary that says how splats set voxels; empty for other sources.
+std::string splat_table(const ImportedModel& result) {
+  const std::map<std::string, std::string>& build = result.model.metadata().build;
+  if (build.at("cover") != "splats") return "";
+  return fmt::format("  {:<14}opacity {}, scales {} to {}{}\n", "splats", build.at("opacity"),
+                     build.at("min_scale"), build.at("max_scale"),
+                     result.too_large > 0
+                         ? fmt::format("; {} larger ones left out", with_commas(result.too_large))
+                         : "");
 }
 
 double parse_color_bound(const std::string& text) {
@@ -117,6 +135,7 @@ void import(const ImportArguments& arguments, Session& session) {
     const nlohmann::ordered_json json = {{"read", result.read},
                                          {"outside", result.outside},
                                          {"not_finite", result.not_finite},
+                                         {"too_large", result.too_large},
                                          {"voxels", counts.voxels},
                                          {"dag_nodes", counts.dag_nodes()},
                                          {"seconds", watch.since_start()},
@@ -126,14 +145,15 @@ void import(const ImportArguments& arguments, Session& session) {
     std::error_code unknown;
     const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
     fmt::print(
-        "{}: {} read{}{}, {} voxels of {}³, {}, {}\n{}", arguments.output, with_commas(result.read),
+        "{}: {} read{}{}, {} voxels of {}³, {}, {}\n{}{}", arguments.output,
+        with_commas(result.read),
         result.outside > 0 ? fmt::format(", {} of them outside", with_commas(result.outside)) : "",
         result.not_finite > 0
             ? fmt::format(", {} of them not finite", with_commas(result.not_finite))
             : "",
         with_commas(counts.voxels), with_commas(model.grid().resolution()),
         human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
-        human_seconds(watch.since_start()),
+        human_seconds(watch.since_start()), splat_table(result),
         transform_table(arguments.transform, custom_of(arguments.files.front(), arguments.format)));
   }
 }
@@ -147,15 +167,17 @@ void add_import_command(const Command& program, Session& session) {
                                       "  voxdag import points.npy --voxel-size 0.05 --bounds "
                                       "0,0,0,100,100,20 -o street.vdag\n"
                                       "  voxdag import castle.vox -o castle.vdag\n"
-                                      "  voxdag import head.nii.gz --threshold 300 -o head.vdag\n\n"
+                                      "  voxdag import head.nii.gz --threshold 300 -o head.vdag\n"
+                                      "  voxdag import scan.ply --voxel-size 0.05 -o scan.vdag\n\n"
                                       "The file may have any number of points or voxels, in any "
-                                      "order. Each point sets the voxel that it lies in. The DAG "
-                                      "gets the colours of the file.");
+                                      "order. Each point sets the voxel that it lies in; Gaussian "
+                                      "splats set the voxels where they are opaque "
+                                      "(docs/splats.md). The DAG gets the colours of the file.");
   command
       .repeated(
           "file", arguments->files, [](const std::string& text) { return text; }, "FILE...",
           "One file, several, a folder of them or a pattern. Points: .ply, .las, .pcd, .npy of N x "
-          "3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. "
+          "3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. Gaussian splats: .ply, .splat. "
           "Voxels: .vox, .binvox, .schem, .schematic, .litematic, .nbt (Minecraft), .bt, .ot "
           "(OctoMap), or .npy of N x 3 integers. Volumes: .npy of X x Y x Z, .nrrd, "
           ".nhdr, .nii, .vdb, or a folder of .png slices. Each of them may also be compressed "
@@ -192,6 +214,19 @@ void add_import_command(const Command& program, Session& session) {
   command.parsed("--threshold", arguments->threshold, parse_finite, "VALUE",
                  "For volumes of numbers: values from VALUE on set their voxel (default: all but "
                  "0)");
+  command.parsed("--opacity", options.splats.opacity, parse_opacity, "A",
+                 "For Gaussian splats: set the voxels whose splats together have this opacity or "
+                 "more, above 0 and below 1 (default: 0.1)");
+  command.parsed("--min-scale", options.splats.min_scale, parse_positive, "S",
+                 "For splats: the least standard deviation along an axis, in world units; thinner "
+                 "splats grow to it (default: half a voxel)");
+  command.parsed(
+      "--max-scale", options.splats.max_scale, parse_positive, "S",
+      "For splats: leave out those with a standard deviation of S or more (default: 1/64 "
+      "of the longest side of the box of the centres, or of --bounds, rounded down to a "
+      "power of two)");
+  command.flag("--points", arguments->splats_are_points,
+               "For splats: read their centres as points");
   const Option no_colors =
       command.flag("--no-color", arguments->is_grey, "Leave out the colours of FILE");
   command

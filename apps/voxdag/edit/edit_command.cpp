@@ -7,6 +7,7 @@
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/model/edited.hpp"
+#include "voxdag/formats/exports/export_scene.hpp"
 
 namespace voxdag::cli {
 
@@ -36,7 +37,8 @@ void add_edit(const Command& command, Session& session, const Edit& edit,
       const DagModel file(std::move(opened), work);
       Placing placing{file.grid()};
       Svdag dag =
-          edit(file.view(), placing, {session.subject, file.metadata().presentation.unit, work});
+          edit(file.view(), placing,
+               {session.subject, file.metadata().presentation.unit, work, up_of(file.metadata())});
       const PlacedModel source{file, placing.orientation, placing.offset};
       write_edited(*arguments, std::move(dag), placing.grid, {&source, 1}, describe(), memory,
                    session);

@@ -1,17 +1,19 @@
 #pragma once
 /// Commands that make one DAG from another.
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "edit/edited_file.hpp"
 
 namespace voxdag::cli {
 
-/// The file, its unit, and the memory and progress of an edit.
+/// The file, what is known about it, and the memory and progress of an edit.
 struct EditContext {
   const std::string& path;  ///< The input, for errors.
   const std::string& unit;  ///< Of the coordinates; empty: not known.
   Work work;
+  std::optional<char> up = {};  ///< The axis that points up.
 };
 
 /// The grid of the result, and where it has the voxels of the input.
@@ -37,5 +39,7 @@ void add_edit(const Command& command, Session& session, const Edit& edit,
 
 /// Adds `voxdag hollow`.
 void add_hollow_command(const Command& program, Session& session);
+/// Adds `voxdag carve`.
+void add_carve_command(const Command& program, Session& session);
 
 }  // namespace voxdag::cli

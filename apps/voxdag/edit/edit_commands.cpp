@@ -1,5 +1,6 @@
 /// The commands that make one DAG from another: `voxdag crop`, `shift`, `mirror`, `rotate`,
-/// `dilate`, `erode` and `fill`; `hollow` has a file of its own.
+/// `dilate`, `erode` and `fill`; `hollow` and `carve` have files of
+/// their own.
 #include <fmt/core.h>
 
 #include <memory>
@@ -186,6 +187,7 @@ void add_edit_commands(const Command& program, Session& session) {
   add_grow_command(program, session, false);
   add_fill_command(program, session);
   add_hollow_command(program, session);
+  add_carve_command(program, session);
 }
 
 }  // namespace voxdag::cli

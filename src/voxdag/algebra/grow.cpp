@@ -161,28 +161,34 @@ Svdag copy_of(const SvdagView& dag) {
   return copy;
 }
 
-Svdag join_neighbours(const SvdagView& dag, int steps, Neighbours neighbours, bool is_union,
-                      Work work) {
-  assert(steps >= 0);
+/// Joins a grid with all its copies that are moved by at most half[axis] voxels along each axis.
+Svdag join_box(const SvdagView& dag, Vec3i half, bool is_union, Work work) {
   Svdag result = copy_of(dag);
   const int side = 1 << dag.levels;
-  steps = std::min(steps, 3 * side);
-  if (neighbours == Neighbours::k6) {
-    for (int step = 0; step < steps; ++step) {
-      Svdag next = rewrite(StarRule(result.view(), is_union), dag.levels, work);
-      if (next == result) break;
-      result = std::move(next);
-    }
-    return result;
-  }
-  for (int axis = 0; axis < 3; ++axis)
-    for (int reach = 0; reach < std::min(steps, side);) {
+  for (int axis = 0; axis < 3; ++axis) {
+    assert(half[axis] >= 0);
+    for (int reach = 0; reach < std::min(half[axis], side);) {
       // Copies that are moved by reach + 1 voxels or less leave no gaps, even at the grid's sides.
-      const int step = std::min({reach + 1, steps - reach, side - 1});
+      const int step = std::min({reach + 1, half[axis] - reach, side - 1});
       result = rewrite(AxisRule(result.view(), axis, static_cast<std::uint32_t>(step), is_union),
                        dag.levels, work);
       reach += step;
     }
+  }
+  return result;
+}
+
+Svdag join_neighbours(const SvdagView& dag, int steps, Neighbours neighbours, bool is_union,
+                      Work work) {
+  assert(steps >= 0);
+  if (neighbours == Neighbours::k26) return join_box(dag, {steps, steps, steps}, is_union, work);
+  Svdag result = copy_of(dag);
+  steps = std::min(steps, 3 << dag.levels);
+  for (int step = 0; step < steps; ++step) {
+    Svdag next = rewrite(StarRule(result.view(), is_union), dag.levels, work);
+    if (next == result) break;
+    result = std::move(next);
+  }
   return result;
 }
 
@@ -190,6 +196,10 @@ Svdag join_neighbours(const SvdagView& dag, int steps, Neighbours neighbours, bo
 
 Svdag dilate(const SvdagView& dag, int steps, Neighbours neighbours, Work work) {
   return join_neighbours(dag, steps, neighbours, true, work);
+}
+
+Svdag dilate_box(const SvdagView& dag, Vec3i half, Work work) {
+  return join_box(dag, half, true, work);
 }
 
 Svdag erode(const SvdagView& dag, int steps, Neighbours neighbours, Work work) {

@@ -64,7 +64,7 @@ FormatCustom custom_of(const std::string& file_name, const std::string& format) 
   if (is_one_of({".gltf", ".glb", ".dae"})) return {1, "m", true};
   if (ending == ".3mf") return {2, "mm", true};
   if (is_one_of({".obj", ".ply", ".off", ".fbx", ".3ds", ".blend", ".x", ".x3d", ".lwo", ".ac",
-                 ".b3d", ".ms3d", ".vdb"}))
+                 ".b3d", ".ms3d", ".vdb", ".splat"}))
     return {};
   return {2, "", true};
 }

@@ -23,6 +23,13 @@ class MortonBuilder {
     block_code_ = code >> 6;
     block_ |= std::uint64_t{1} << (code & 63);
   }
+  /// Adds the voxels of a leaf block, at least one. `code` is the block's, code >> 6 of its voxels;
+  /// it is after those that came before. Throws as add() does.
+  void add_block(std::uint64_t code, std::uint64_t voxels) {
+    if (block_ != 0) close_block(code);
+    block_code_ = code;
+    block_ = voxels;
+  }
   /// Returns the minimal DAG, in canonical order. Call it last. Throws as add() does.
   Svdag finish();
 

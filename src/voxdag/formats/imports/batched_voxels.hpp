@@ -18,10 +18,13 @@ class BatchedVoxels {
     colors_.push_back(color);
     add(place);
   }
+  /// Notes the splat of the place that is added next. A source gives all its places one, or none.
+  void add_splat(const Splat& splat) { splats_.push_back(splat); }
   void finish() {
-    if (!places_.empty()) visit_({places_, colors_});
+    if (!places_.empty()) visit_({places_, colors_, splats_});
     places_.clear();
     colors_.clear();
+    splats_.clear();
   }
 
  private:
@@ -30,6 +33,7 @@ class BatchedVoxels {
   const VisitBatch& visit_;
   std::vector<Vec3d> places_;
   std::vector<Rgb8> colors_;
+  std::vector<Splat> splats_;
 };
 
 }  // namespace voxdag

@@ -15,6 +15,7 @@ class DerivedSource : public VoxelSource {
 
   bool has_points() const override { return source_->has_points(); }
   bool has_colors() const override { return source_->has_colors(); }
+  bool has_splats() const override { return source_->has_splats(); }
   CoordinateError coordinate_error() const override { return source_->coordinate_error(); }
   bool has_palette() const override { return source_->has_palette(); }
   std::optional<Grid> grid() const override { return source_->grid(); }

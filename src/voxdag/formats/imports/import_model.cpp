@@ -3,10 +3,15 @@
 #include <utility>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/number_text.hpp"
 
 namespace voxdag {
 
 void check_grid_options(const VoxelSource& source, const ImportOptions& options) {
+  const SplatOptions& splats = options.splats;
+  if (!source.has_splats() && (splats.opacity || splats.min_scale || splats.max_scale))
+    throw Error("", "",
+                "is not read as splats: --opacity, --min-scale and --max-scale are for those");
   const bool sets_place = options.voxel_size || options.origin;
   if (source.has_points()) {
     if (!options.resolution && !options.voxel_size && !source.grid())
@@ -36,13 +41,19 @@ ImportedModel import_model(const VoxelSource& source, const ImportOptions& optio
   metadata.build = {{"cover", "imported"}};
   if (const std::optional<char> up = source.up()) metadata.build["up"] = std::string(1, *up);
   add_settings(transform, metadata.build);
+  if (source.has_splats()) {
+    metadata.build["cover"] = "splats";
+    metadata.build["opacity"] = number_text(*result.splats.opacity);
+    metadata.build["min_scale"] = number_text(*result.splats.min_scale);
+    metadata.build["max_scale"] = number_text(*result.splats.max_scale);
+  }
   if (result.attributes.view().has_colors()) {
     metadata.attributes.resolution = result.grid.resolution();
     metadata.attributes.colors = {color_bound_of(source, options),
                                   result.attributes.color_errors.squared};
   }
   return {DagModel(std::move(result.dag), std::move(result.attributes), std::move(metadata), work),
-          result.read, result.outside, result.not_finite};
+          result.read, result.outside, result.not_finite, result.too_large};
 }
 
 }  // namespace voxdag

@@ -14,6 +14,7 @@ struct ImportedModel {
   std::uint64_t read = 0;        ///< Points or voxels in the source.
   std::uint64_t outside = 0;     ///< Points outside of the bounds, which are left out.
   std::uint64_t not_finite = 0;  ///< Points that are not finite, which are left out.
+  std::uint64_t too_large = 0;   ///< Splats that are too large, which are left out.
 };
 
 /// Throws Error, without a file, for options that the kind of source does not have, or needs.

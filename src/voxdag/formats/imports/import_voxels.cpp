@@ -11,6 +11,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
+#include "voxdag/formats/imports/splats/import_splats.hpp"
 
 namespace voxdag {
 namespace {
@@ -112,6 +113,7 @@ Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Wor
 }  // namespace
 
 ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options, Work work) {
+  if (source.has_splats()) return import_splats(source, options, work);
   const bool has_points = source.has_points();
   ImportResult result;
   result.grid =

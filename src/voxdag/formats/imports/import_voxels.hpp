@@ -11,6 +11,18 @@
 
 namespace voxdag {
 
+/// How Gaussian splats set voxels (docs/splats.md).
+struct SplatOptions {
+  /// Above 0, below 1: a voxel of this opacity is set. Default: 0.1.
+  std::optional<double> opacity = {};
+  /// The least standard deviation along an axis, in world units. Default: half a voxel.
+  std::optional<double> min_scale = {};
+  /// Splats with a standard deviation of this or more, in world units, are left out. Default: the
+  /// greatest power of two that is not above 1/64 of the longest side of `bounds`, or of the box of
+  /// the centres.
+  std::optional<double> max_scale = {};
+};
+
 /// The grid is for points; of voxels, `resolution` is the least side of the grid, and `voxel_size`
 /// and `origin` are for those without a place.
 struct ImportOptions : GridRequest {
@@ -18,6 +30,7 @@ struct ImportOptions : GridRequest {
   /// AttributeOptions::color_bound. Default: 0.05; 0 for sources with a palette.
   std::optional<double> color_bound;
   std::filesystem::path folder;  ///< Of files for sorting.
+  SplatOptions splats;
 };
 
 /// Returns the color_bound of an import.
@@ -29,9 +42,13 @@ struct ImportResult {
   Svdag dag;
   DagAttributes attributes;  ///< Colours of all cells, if there are any.
   Grid grid;
-  std::uint64_t read = 0;        ///< Points or voxels in the file.
-  std::uint64_t outside = 0;     ///< Points outside of the bounds, which are left out.
-  std::uint64_t not_finite = 0;  ///< Points with NaN or infinite coordinates, which are left out.
+  std::uint64_t read = 0;     ///< Points or voxels in the file.
+  std::uint64_t outside = 0;  ///< Points outside of the bounds, which are left out.
+  /// Points with NaN or infinite coordinates, and splats with such numbers or without a rotation,
+  /// which are left out.
+  std::uint64_t not_finite = 0;
+  std::uint64_t too_large = 0;  ///< Splats that SplatOptions::max_scale leaves out.
+  SplatOptions splats;          ///< The options that were used, if the source has splats.
 };
 
 /// Sets the voxel of each point (see PointLocator), or each voxel. Points need exactly one of
@@ -42,7 +59,8 @@ struct ImportResult {
 /// neither: without `resolution` the grid is that of the file, or the smallest one with its corner
 /// at 0 that holds them. Reads the file once or twice; memory is bounded. Throws Error, OverMemory
 /// and Cancelled. Voxels of sources without a place lie in a grid of `voxel_size` (default 1) with
-/// its corner at `origin` (default 0).
+/// its corner at `origin` (default 0). Splats set voxels by `splats`; their grid is placed around
+/// the boxes of the splats, as for a mesh.
 ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options, Work work = {});
 
 }  // namespace voxdag

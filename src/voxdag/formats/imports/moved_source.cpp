@@ -1,6 +1,7 @@
 #include "voxdag/formats/imports/moved_source.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -11,10 +12,37 @@
 namespace voxdag {
 namespace {
 
+/// Returns the turn of a transform as a quaternion w, x, y, z.
+std::array<double, 4> quaternion_of(const InputTransform& transform) {
+  const Vec3d x = transform.turned({1, 0, 0}), y = transform.turned({0, 1, 0}),
+              z = transform.turned({0, 0, 1});
+  // Four times the squares of its parts; the largest one gives the others.
+  const std::array<double, 4> squares{1 + x.x + y.y + z.z, 1 + x.x - y.y - z.z, 1 - x.x + y.y - z.z,
+                                      1 - x.x - y.y + z.z};
+  std::array<double, 4> q{squares[0], y.z - z.y, z.x - x.z, x.y - y.x};
+  const auto most = std::max_element(squares.begin(), squares.end()) - squares.begin();
+  if (most == 1) q = {y.z - z.y, squares[1], y.x + x.y, z.x + x.z};
+  if (most == 2) q = {z.x - x.z, y.x + x.y, squares[2], z.y + y.z};
+  if (most == 3) q = {x.y - y.x, z.x + x.z, z.y + y.z, squares[3]};
+  return q;
+}
+
+/// Returns the rotation that turns by `b`, then by `a`, rounded to floats.
+std::array<float, 4> quaternion_product(const std::array<double, 4>& a,
+                                        const std::array<float, 4>& b) {
+  const double w = b[0], x = b[1], y = b[2], z = b[3];
+  const std::array<double, 4> turned{
+      a[0] * w - a[1] * x - a[2] * y - a[3] * z, a[0] * x + a[1] * w + a[2] * z - a[3] * y,
+      a[0] * y - a[1] * z + a[2] * w + a[3] * x, a[0] * z + a[1] * y - a[2] * x + a[3] * w};
+  std::array<float, 4> rounded;
+  for (std::size_t i = 0; i < 4; ++i) rounded[i] = static_cast<float>(turned[i]);
+  return rounded;
+}
+
 class MovedPoints final : public DerivedSource {
  public:
   MovedPoints(std::unique_ptr<VoxelSource> source, const InputTransform& transform)
-      : DerivedSource(std::move(source)), transform_(transform) {}
+      : DerivedSource(std::move(source)), transform_(transform), turn_(quaternion_of(transform)) {}
 
   CoordinateError coordinate_error() const override {
     CoordinateError error = source_->coordinate_error();
@@ -25,11 +53,26 @@ class MovedPoints final : public DerivedSource {
   }
   std::optional<Grid> grid() const override { return std::nullopt; }
   void visit_all(const VisitBatch& visit) const override {
-    visit_moved(visit, [this](Vec3d point) { return transform_.point(point); });
+    if (!has_splats())
+      return visit_moved(visit, [this](Vec3d point) { return transform_.point(point); });
+    std::vector<Vec3d> places;
+    std::vector<Splat> splats;
+    source_->visit_all([&](const VoxelBatch& batch) {
+      places.clear();
+      for (const Vec3d place : batch.places) places.push_back(transform_.point(place));
+      splats.assign(batch.splats.begin(), batch.splats.end());
+      for (Splat& splat : splats) {
+        splat.rotation = quaternion_product(turn_, splat.rotation);
+        for (float& scale : splat.scale)
+          scale = static_cast<float>(static_cast<double>(scale) * transform_.factor());
+      }
+      visit({places, batch.colors, splats});
+    });
   }
 
  private:
   InputTransform transform_;
+  std::array<double, 4> turn_;
 };
 
 class TurnedVoxels final : public DerivedSource {
@@ -98,6 +141,8 @@ class JoinedSource final : public VoxelSource {
       const VoxelSource& source = *sources_[i];
       if (source.has_points() != has_points())
         throw Error("", "", "is joined with others: all of them must hold points, or all voxels");
+      if (source.has_splats() != has_splats())
+        throw Error("", "", "is joined with others: all of them must hold splats, or none");
       has_colors_ |= source.has_colors();
       if (!has_points()) add_grid(i);
     }
@@ -105,6 +150,7 @@ class JoinedSource final : public VoxelSource {
 
   bool has_points() const override { return sources_[0]->has_points(); }
   bool has_colors() const override { return has_colors_; }
+  bool has_splats() const override { return sources_[0]->has_splats(); }
   bool has_palette() const override {
     return std::all_of(sources_.begin(), sources_.end(),
                        [](const auto& source) { return source->has_palette(); });

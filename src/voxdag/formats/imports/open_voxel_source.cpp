@@ -45,7 +45,14 @@ constexpr SourceFormat kSourceFormats[] = {
     {".asc", false, open_text},
     {".pts", false, open_text},
     {".xyzrgb", false, open_text},
-    {".ply", false, [](const Path& path, const Options&) { return open_ply_points(path); }},
+    {".ply", false,
+     [](const Path& path, const Options& options) {
+       return open_ply_points(path, options.splats_are_points);
+     }},
+    {".splat", false,
+     [](const Path& path, const Options& options) {
+       return open_splat_file(path, options.splats_are_points);
+     }},
     {".las", false, [](const Path& path, const Options&) { return open_las_points(path); }},
     {".pcd", false, [](const Path& path, const Options&) { return open_pcd_points(path); }},
     {".binvox", false, [](const Path& path, const Options&) { return open_binvox(path); }},

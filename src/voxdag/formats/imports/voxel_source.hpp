@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "voxdag/builders/splats/splat.hpp"
 #include "voxdag/core/grid.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
@@ -30,6 +31,8 @@ struct VoxelBatch {
   /// Points in world units, which may be NaN or infinite, or voxels as whole numbers.
   std::span<const Vec3d> places;
   std::span<const Rgb8> colors;  ///< One for each place; empty if the source has no colours.
+  /// One for each place, its centre; empty if the source has no splats.
+  std::span<const Splat> splats = {};
 };
 using VisitBatch = std::function<void(const VoxelBatch&)>;
 
@@ -41,6 +44,8 @@ class VoxelSource {
   /// Returns whether the file has points in world units; otherwise it has voxels of a grid.
   virtual bool has_points() const = 0;
   virtual bool has_colors() const { return false; }
+  /// Returns whether the points are Gaussian splats.
+  virtual bool has_splats() const { return false; }
   /// Returns how exact the coordinates of points are.
   virtual CoordinateError coordinate_error() const { return {}; }
   /// Returns whether the colours come from an artist's palette. The import keeps these without
@@ -69,7 +74,8 @@ struct VoxelSourceOptions {
   bool use_placement = true;  ///< Reads the placement that voxdag export wrote beside the file.
   std::string format = {};    ///< The ending that tells the format, "xyz"; empty: that of the name.
   std::string grid = {};  ///< For .vdb files: the name of the grid to read; empty: see open_vdb().
-  Work work = {};         ///< Its budget counts what is unpacked.
+  bool splats_are_points = false;  ///< Reads Gaussian splats as points: their centres.
+  Work work = {};                  ///< Its budget counts what is unpacked.
 };
 
 /// Returns whether open_voxel_source() knows the end of the name. Files that end in .ply hold

@@ -14,34 +14,44 @@
 namespace voxdag {
 namespace {
 
-/// Three coordinates, then three components of a colour if the file has them.
-using Values = std::array<double, 6>;
+/// Three coordinates, then three components of a colour if the file has them, then the opacity, the
+/// scales and the rotation of a splat if the vertices are splats.
+using Values = std::array<double, 14>;
 
 class PlyPoints : public VoxelSource {
  public:
-  explicit PlyPoints(const std::filesystem::path& path)
+  PlyPoints(const std::filesystem::path& path, bool splats_are_points)
       : file_(path, MappedFile::Access::kSequential),
         source_{file_.text(), path.string(), {}, &file_, {}},
         header_(parse_ply_header(source_, PlyUse::kPoints)) {
     read_comments();
     for (const std::string_view axis : {"x", "y", "z"}) columns_.push_back(vertex().find({axis}));
     std::vector<int> color = find_ply_color(vertex());
-    const bool is_splat = color.empty();
-    if (is_splat) color = find_splat_color(vertex());
-    if (color.empty()) return;
-    columns_.insert(columns_.end(), color.begin(), color.begin() + 3);
-    for (std::size_t c = 0; c < 3; ++c)
-      color_scales_[c] = is_splat ? kHarmonic : ply_color_scale(type_of(columns_[3 + c]));
-    color_offset_ = is_splat ? kSplatMiddle : 0;
-    if (!is_splat && std::any_of(color.begin(), color.begin() + 3,
-                                 [&](int p) { return !is_integer(type_of(p)); }))
+    const bool is_harmonic = color.empty();
+    if (is_harmonic) color = find_splat_color(vertex());
+    if (!color.empty()) {
+      columns_.insert(columns_.end(), color.begin(), color.begin() + 3);
+      first_splat_column_ = 6;
+      for (std::size_t c = 0; c < 3; ++c)
+        color_scales_[c] = is_harmonic ? kHarmonic : ply_color_scale(type_of(columns_[3 + c]));
+      color_offset_ = is_harmonic ? kSplatMiddle : 0;
+    }
+    if (!splats_are_points) {
+      const std::vector<int> splat = find_ply_scalars(
+          vertex(),
+          {"opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"});
+      columns_.insert(columns_.end(), splat.begin(), splat.end());
+    }
+    if (!is_harmonic && std::any_of(color.begin(), color.begin() + 3,
+                                    [&](int p) { return !is_integer(type_of(p)); }))
       find_color_range();
   }
 
   bool has_points() const override { return true; }
+  bool has_splats() const override { return columns_.size() > first_splat_column_; }
   std::optional<Grid> grid() const override { return grid_; }
   std::optional<char> up() const override { return up_; }
-  bool has_colors() const override { return columns_.size() > 3; }
+  bool has_colors() const override { return first_splat_column_ > 3; }
   CoordinateError coordinate_error() const override {
     const bool has_floats = std::any_of(columns_.begin(), columns_.begin() + 3, [&](int property) {
       return type_of(property) == PlyType::kFloat;
@@ -112,6 +122,13 @@ class PlyPoints : public VoxelSource {
     for (int axis = 0; axis < 3; ++axis) {
       const double value = values[static_cast<std::size_t>(axis)];
       point[turn_.source_axis[axis]] = turn_.is_flipped[axis] ? -value : value;
+    }
+    if (has_splats()) {
+      const auto value = [&](std::size_t i) {
+        return static_cast<float>(values[first_splat_column_ + i]);
+      };
+      points.add_splat(splat_of_logarithms({value(4), value(5), value(6), value(7)},
+                                           {value(1), value(2), value(3)}, value(0)));
     }
     if (!has_colors()) return points.add(point);
     Rgb8 color;
@@ -196,8 +213,10 @@ class PlyPoints : public VoxelSource {
     for (std::size_t p = 0; p < vertex().properties.size(); ++p)
       take_ply_property(row, vertex().properties[p], poll, [&](std::string_view token) {
         for (std::size_t c = 0; c < columns_.size(); ++c)
-          if (columns_[c] == static_cast<int>(p) && !parse_float(token, values[c]) && c < 3)
-            throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
+          if (columns_[c] == static_cast<int>(p) && !parse_float(token, values[c]) &&
+              (c < 3 || c >= first_splat_column_))
+            throw Fault{token.data(), (c < 3 ? "coordinate " : "property ") + in_quotes(token) +
+                                          " is not a number"};
       });
     check_ply_row_end(row);
     return values;
@@ -210,14 +229,17 @@ class PlyPoints : public VoxelSource {
   std::optional<char> up_;    ///< The axis that pointed up before the turn.
   Orientation turn_;
   std::vector<int> columns_;  ///< The properties of the values.
+  std::size_t first_splat_column_ = 3;
   std::array<double, 3> color_scales_{};
   double color_offset_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> open_ply_points(const std::filesystem::path& path) {
-  return std::make_unique<PlyPoints>(path);
+std::unique_ptr<VoxelSource> open_ply_points(const std::filesystem::path& path,
+                                             bool splats_are_points) {
+  if (auto packed = open_packed_ply(path, splats_are_points)) return packed;
+  return std::make_unique<PlyPoints>(path, splats_are_points);
 }
 
 }  // namespace voxdag

@@ -32,11 +32,26 @@ std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path);
 /// the properties that the mesh reader knows, with its scales: red, green and blue, or
 /// diffuse_red ..., or r ...; integers up to the greatest value of 8 or 16 bits, or floats from 0
 /// to 1, or to 255 if some are 2 or more; clamped. Gaussian splats have the colour of f_dc_0 to
-/// f_dc_2.
+/// f_dc_2. Vertices with the properties opacity, scale_0 to scale_2 and rot_0 to rot_3 are splats,
+/// unless `splats_are_points`. See open_packed_ply() for compressed splats.
 ///
 /// Throws Error with the line (in a binary body with the byte): malformed headers and values,
 /// counts that need a longer file, truncation before the end of the vertices.
-std::unique_ptr<VoxelSource> open_ply_points(const std::filesystem::path& path);
+std::unique_ptr<VoxelSource> open_ply_points(const std::filesystem::path& path,
+                                             bool splats_are_points = false);
+
+/// Opens a compressed PLY file of PlayCanvas, whose vertices have the property packed_position;
+/// returns null for others. Ignores the spherical harmonics above the first. Throws Error: see
+/// open_ply_points(), which calls this function.
+std::unique_ptr<VoxelSource> open_packed_ply(const std::filesystem::path& path,
+                                             bool splats_are_points = false);
+
+/// Opens a .splat file (antimatter15/splat): records of 32 bytes. Each has the centre and the
+/// standard deviations, three floats each; red, green, blue and the opacity, one byte each; the
+/// rotation w, x, y, z, one byte q each for (q - 128) / 128. Throws Error if the size of the file
+/// is no multiple of 32 bytes.
+std::unique_ptr<VoxelSource> open_splat_file(const std::filesystem::path& path,
+                                             bool splats_are_points = false);
 
 /// Opens the points of a LAS file, versions 1.0 to 1.5, point formats 0 to 10. Skips points that
 /// are flagged as withheld, which the specification calls deleted; reads synthetic points and all

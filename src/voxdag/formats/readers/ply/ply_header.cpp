@@ -44,7 +44,7 @@ class PlyHeaderParser {
     if (!has_format_) fail("PLY header without a 'format' line");
     header_.body = source_.bytes.size() - rest_.size();
     check_elements();
-    check_vertices();
+    check_vertices(use);
     if (use == PlyUse::kMesh) check_mesh();
     return std::move(header_);
   }
@@ -171,9 +171,10 @@ class PlyHeaderParser {
     return element.name == "tristrips" && element.count > 0;
   }
 
-  void check_vertices() {
+  void check_vertices(PlyUse use) {
     if (header_.vertex < 0) fail("PLY without a 'vertex' element");
     const PlyElement& vertex = header_.elements[header_.vertex];
+    if (use == PlyUse::kPoints && vertex.find({"packed_position"}) >= 0) return;
     for (const std::string_view axis : {"x", "y", "z"}) {
       const int found = vertex.find({axis});
       if (found < 0) fail("PLY vertices without property " + in_quotes(axis));

@@ -74,9 +74,10 @@ enum class PlyUse : std::uint8_t {
   kPoints  ///< Vertices; the file may have faces, strips or other elements.
 };
 
-/// Parses the header and checks it: every line is known, vertices have x, y and z, and the file is
-/// at least as long as the counts imply. A mesh also needs faces with a list of integer indices and
-/// at most 2^32 - 2 vertices. Throws Error with the line, OverMemory.
+/// Parses the header and checks it: every line is known, vertices have x, y and z (points may have
+/// packed_position instead), and the file is at least as long as the counts imply. A mesh also
+/// needs faces with a list of integer indices and at most 2^32 - 2 vertices. Throws Error with the
+/// line, OverMemory.
 PlyHeader parse_ply_header(const MeshSource& source, PlyUse use = PlyUse::kMesh);
 
 /// The elements and the indices of the properties that belong to the mesh. `header` must outlive
