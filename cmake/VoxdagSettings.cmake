@@ -43,6 +43,6 @@ if(EMSCRIPTEN)
     string(APPEND CMAKE_${language}_FLAGS " --em-config ${PROJECT_SOURCE_DIR}/cmake/wasm/emscripten.config -Wno-version-check")
   endforeach()
   add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include ${PROJECT_SOURCE_DIR}/cmake/wasm/libcxx14.hpp>")
-  # JavaScript looks again where memory is after it has grown, which costs nothing here.
-  add_link_options(-fwasm-exceptions -pthread -Wno-pthreads-mem-growth)
+  # All threads have the stack of the first one. JavaScript looks again where memory is after it has grown; it has little to do.
+  add_link_options(-fwasm-exceptions -pthread -sDEFAULT_PTHREAD_STACK_SIZE=5MB -Wno-pthreads-mem-growth)
 endif()
