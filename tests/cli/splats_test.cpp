@@ -62,7 +62,7 @@ TEST_F(SplatCommands, ARoomBecomesACollisionFile) {
   const std::uint64_t solid = json_of({"query", path("solid.vdag"), "--count"})["voxels"],
                       wall = json_of({"query", path("wall.vdag"), "--count"})["voxels"];
   EXPECT_GT(solid, 0u);
-  EXPECT_GT(wall, 2u * (70 * 70 + 2 * 70 * 30));
+  EXPECT_GT(wall, 2u * (68 * 68 + 2 * 68 * 28));
   EXPECT_LE(wall, 2u * (82 * 82 + 2 * 82 * 42));
   ASSERT_EQ(run_voxdag({"export", path("solid.vdag"), "-o", path("room.voxel.json")}).status, 0);
   ASSERT_EQ(run_voxdag({"export", path("wall.vdag"), "-o", path("wall.glb")}).status, 0);
