@@ -17,6 +17,11 @@ if(PROJECT_IS_TOP_LEVEL)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)
 endif()
 
+if(CMAKE_CXX_BYTE_ORDER STREQUAL BIG_ENDIAN)
+  message(FATAL_ERROR "voxdag: the processor ${CMAKE_SYSTEM_PROCESSOR} is big-endian, but voxdag maps files, whose numbers are "
+                      "little-endian. include/voxdag.h, the reader in one header, works there (docs/reader.md)")
+endif()
+
 add_library(voxdag_settings INTERFACE)
 # -ffp-contract=off: equal arithmetic, and so equal hits and bytes, on every machine.
 # Without errno and traps, square roots and comparisons are single instructions; results are equal.

@@ -35,7 +35,10 @@ voxdag_wasm_packages=(emscripten googletest clang-16 lld-16 llvm-16)
 
 # scripts/release.sh makes the files of a release with these.
 voxdag_release_packages=(libopenvdb-dev libnanovdb-dev libboost-dev pybind11-dev python3-dev python3-numpy
-  python3-wheel patchelf file)
+  python3-wheel patchelf dpkg-dev file)
+
+# cmake/arm64.cmake cross-compiles with these, and QEMU runs the programs.
+voxdag_arm64_packages=(crossbuild-essential-arm64 qemu-user-static mmdebstrap)
 
 # The tests of the viewer in browsers skip themselves without these.
 voxdag_browser_packages=(chromium firefox-esr xvfb xauth)
@@ -66,4 +69,30 @@ install_packages() {
   "${as_root[@]}" apt-get update -q
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
     apt-get install -q -y --no-install-recommends "${missing[@]}"
+}
+
+# make_arm64_system FOLDER: unpacks the packages for arm64 that voxdag, its tests and its Python module need, and
+# all that those need, into a folder. Nothing is installed: the processor of this machine runs none of them.
+# FOLDER/files has a line "PACKAGE VERSION FILE" for each file.
+make_arm64_system() {
+  local system=$1 packages link
+  packages=$(printf '%s\n' "${voxdag_packages[@]}" "${voxdag_release_packages[@]}" libgtest-dev |
+    grep -- '-dev$\|^python3-numpy$' | sort -u | sed 's/^python3-dev$/libpython3-dev/' | paste -sd,)
+  [ "$(cat "$system/packages" 2>/dev/null)" != "$packages" ] || return 0
+  install_packages "${voxdag_arm64_packages[@]}"
+  echo "Unpacking the packages for arm64"
+  rm -rf "$system"
+  mkdir -p "$(dirname "$system")"
+  # shellcheck disable=SC2016
+  mmdebstrap --quiet --variant=extract --architectures=arm64 --include="$packages" --customize-hook='
+    for deb in "$1"/var/cache/apt/archives/*.deb; do
+      dpkg-deb --fsys-tarfile "$deb" | tar t | sed "s|^\.|$(dpkg-deb -W --showformat="\${Package} \${Version} " "$deb")|"
+    done >"$1/files"' bookworm "$system"
+  # Links to absolute paths would leave the folder.
+  find "$system/usr/lib" "$system/lib" -type l -lname '/*' | while read -r link; do
+    ln -sfr "$system$(readlink "$link")" "$link"
+  done
+  # CMake's files of some packages name absolute paths, too.
+  find "$system/usr" -name '*.cmake' -exec sed -i 's|\([":;]\)/usr\b|\1${CMAKE_SYSROOT}/usr|g' {} +
+  echo "$packages" >"$system/packages"
 }

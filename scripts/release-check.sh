@@ -4,6 +4,7 @@
 #   unpacks the tarball, builds a scene, renders a picture and runs the Python module;
 #   on Debian 12 installs the packages, uses them and removes them, and installs the wheel in a virtual environment
 #   and runs the examples of docs/cookbook/python.md.
+# The tarball for aarch64, if there is one, runs under QEMU with the glibc of build/arm64-system alone.
 # The DAGs must have the bytes that the program of this machine makes. Needs root, debootstrap and 3 GB.
 #
 #   scripts/release-check.sh [--mirror URL]
@@ -34,7 +35,7 @@ info s.vdag'
 run_with() { sed "s|^|$1 |; s|\$| -q|" <<<"$use" | sed 's|\(info .*\) -q|\1|'; }
 
 mkdir "$folder/here"
-(cd "$folder/here" && eval "$(run_with "$OLDPWD/build/release-files/apps/voxdag/voxdag")") >/dev/null
+(cd "$folder/here" && eval "$(run_with "$OLDPWD/build/release-files-x86_64/apps/voxdag/voxdag")") >/dev/null
 sum=$(sha256sum <"$folder/here/s.vdag")
 
 for suite in bookworm trixie; do
@@ -44,7 +45,7 @@ for suite in bookworm trixie; do
     { tail "$folder/$suite.log" >&2; exit 1; }
   cp -L /etc/resolv.conf "$system/etc/resolv.conf"
   cp -r dist "$system/root/dist"
-  in_system "$system" "cd /root && tar xzf dist/voxdag-*-linux-*.tar.gz && mv voxdag-*-linux-* /opt/voxdag
+  in_system "$system" "cd /root && tar xzf dist/voxdag-*-linux-x86_64.tar.gz && mv voxdag-*-linux-x86_64 /opt/voxdag
     $(run_with /opt/voxdag/bin/voxdag)
     /opt/voxdag/bin/voxdag --version"
   [ "$(sha256sum <"$system/root/s.vdag")" = "$sum" ] || { echo "$suite: the DAG has other bytes" >&2; exit 1; }
@@ -69,6 +70,18 @@ in_system "$system" "cd /root
   apt-get install -q -y --no-install-recommends python3-venv >/dev/null
   apt-get remove -q -y libtbb12 >/dev/null
   python3 -m venv --system-site-packages env
-  env/bin/pip install -q --no-index --no-deps dist/voxdag-*.whl
+  env/bin/pip install -q --no-index --no-deps dist/voxdag-*-linux_x86_64.whl
   env/bin/python run_page.py /opt/voxdag/bin/voxdag python.md"
+for tarball in dist/voxdag-*-linux-aarch64.tar.gz; do
+  [ -f "$tarball" ] || break
+  echo "== $tarball under QEMU"
+  glibc=$folder/glibc
+  mkdir -p "$glibc/lib" "$folder/arm64"
+  for library in ld-linux-aarch64.so.1 lib{c,m,dl,rt,pthread,resolv}.so.{2,6,0,1}; do
+    cp -L build/arm64-system/lib/aarch64-linux-gnu/$library "$glibc/lib/" 2>/dev/null || true
+  done
+  tar xzf "$tarball" -C "$folder/arm64" --strip-components=1
+  (cd "$folder/arm64" && eval "$(run_with "qemu-aarch64-static -L $glibc bin/voxdag")") >/dev/null
+  [ "$(sha256sum <"$folder/arm64/s.vdag")" = "$sum" ] || { echo "aarch64: the DAG has other bytes" >&2; exit 1; }
+done
 echo "== all files of dist/ work"

@@ -1,7 +1,8 @@
 # ctest includes this file when it starts: it reads the names of the suites from the sources.
 
 # add_suites(PROGRAM PREFIX EXTENDED tests/relative_test.cpp ...) adds a test for each suite:
-# PROGRAM --gtest_filter=SUITE.*, which also has the suite's parameterised tests.
+# PROGRAM --gtest_filter=SUITE.*, which also has the suite's parameterised tests. The command `emulator`
+# runs the program if it is for another processor.
 function(add_suites program prefix extended)
   set(added "")
   foreach(source ${ARGN})
@@ -19,7 +20,7 @@ function(add_suites program prefix extended)
       endif()
       list(APPEND added ${suite})
       set(name ${room}.${suite})
-      add_test(${name} ${program} "--gtest_filter=${suite}.*:*/${suite}.*:${suite}/*.*")
+      add_test(${name} ${emulator} ${program} "--gtest_filter=${suite}.*:*/${suite}.*:${suite}/*.*")
       set_tests_properties(${name} PROPERTIES TIMEOUT 600 SKIP_RETURN_CODE 77)
       if(extended OR suite MATCHES "Extended$")
         set_tests_properties(${name} PROPERTIES LABELS extended)

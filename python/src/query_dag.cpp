@@ -192,8 +192,8 @@ void add_queries(DagClass& dag) {
       .def_property_readonly(
           "volume",
           [](const Dag& d) {
-            return static_cast<double>(d.model().metadata().counts.voxels) *
-                   std::pow(d.grid().voxel_size, 3);
+            const double side = d.grid().voxel_size;
+            return static_cast<double>(d.model().metadata().counts.voxels) * (side * side * side);
           },
           "The volume of the voxels, in cubes of the world unit.");
   dag.def("contains", &contains, py::arg("points"),

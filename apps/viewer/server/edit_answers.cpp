@@ -1,6 +1,6 @@
 #include "viewer/server/edit_answers.hpp"
 
-#include <sys/random.h>
+#include <unistd.h>
 
 #include <charconv>
 #include <cstdint>
@@ -35,7 +35,7 @@ std::uint32_t writer_of(const httplib::Request& request) {
 
 std::string make_token() {
   std::uint8_t bytes[16];
-  if (getrandom(bytes, sizeof bytes, 0) != sizeof bytes)
+  if (getentropy(bytes, sizeof bytes) != 0)
     throw Error("the system gives no random numbers: " + std::system_category().message(errno));
   constexpr char kDigits[] = "0123456789abcdef";
   std::string token;

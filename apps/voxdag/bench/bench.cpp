@@ -1,12 +1,12 @@
 /// `voxdag bench`: runs voxdag-lab, which is a program of its own, with the same arguments.
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <system_error>
 
 #include "cli/commands.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/this_process.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -14,9 +14,7 @@ namespace {
 /// Replaces this process by voxdag-lab, which lies beside this program or in PATH. Throws Error if
 /// it is not there.
 [[noreturn]] void run_lab(std::vector<std::string> arguments) {
-  std::error_code unknown;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  const std::string beside = unknown ? "voxdag-lab" : self.parent_path() / "voxdag-lab";
+  const std::string beside = path_of_program().parent_path() / "voxdag-lab";
   std::vector<char*> argv;
   std::string name = "voxdag-lab";
   argv.push_back(name.data());

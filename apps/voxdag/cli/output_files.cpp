@@ -31,7 +31,7 @@ std::string standard_output() {
     if (copy >= 0) dup2(STDERR_FILENO, STDOUT_FILENO);
     return copy;
   }();
-  return fmt::format("/proc/self/fd/{}", output);
+  return output_path_of(output);
 }
 
 fs::path canonical_output(const std::string& path) {

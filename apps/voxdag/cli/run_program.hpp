@@ -19,7 +19,7 @@ struct Family {
 
 struct Program {
   std::string name;     ///< "voxdag"
-  std::string version;  ///< "0.1.0"
+  std::string version;  ///< "0.2.0"
   std::string purpose;  ///< The first line of the help.
   std::vector<Family> families;
 };

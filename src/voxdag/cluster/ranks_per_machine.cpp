@@ -1,17 +1,16 @@
 #include "voxdag/cluster/ranks_per_machine.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <string>
 
 #include "voxdag/core/io/checksum.hpp"
+#include "voxdag/core/io/this_process.hpp"
 
 namespace voxdag {
 
 RanksPerMachine ranks_per_machine(Ranks& ranks) {
   // Containers on a machine have different host names, but one boot id.
-  std::string boot;
-  std::ifstream("/proc/sys/kernel/random/boot_id") >> boot;
+  const std::string boot = boot_id();
   const std::uint64_t machine = xxh3_64(std::as_bytes(std::span<const char>(boot)));
   const std::vector<std::uint64_t> machines = ranks.all_gather({&machine, 1});
   RanksPerMachine counts;

@@ -39,7 +39,7 @@ struct Presentation {
 struct SceneMetadata {
   Grid grid;
   VdagSource source;
-  std::string program;                       ///< The program that wrote the file: "voxdag 0.1.0".
+  std::string program;                       ///< The program that wrote the file: "voxdag 0.2.0".
   std::map<std::string, std::string> build;  ///< Settings that shape the result: "cover": "exact".
   Presentation presentation;
   friend bool operator==(const SceneMetadata&, const SceneMetadata&) = default;

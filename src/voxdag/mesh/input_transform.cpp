@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "voxdag/core/angles.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/unpacked_name.hpp"
 #include "voxdag/core/lower_case.hpp"
@@ -128,8 +129,7 @@ InputTransform::InputTransform(const TransformRequest& request, const FormatCust
 
 void InputTransform::turn(int axis, double degrees) {
   const double quarters = degrees / 90;
-  double sine = std::sin(degrees * std::numbers::pi / 180),
-         cosine = std::cos(degrees * std::numbers::pi / 180);
+  auto [sine, cosine] = sine_and_cosine(degrees * std::numbers::pi / 180);
   if (quarters == std::floor(quarters)) {  // Quarter turns are exact.
     const auto rest = static_cast<int>(std::fmod(std::fmod(quarters, 4) + 4, 4));
     sine = rest == 1 ? 1 : rest == 3 ? -1 : 0;

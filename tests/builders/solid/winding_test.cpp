@@ -11,7 +11,6 @@
 #include "support/voxel_sets.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/solid/fill_solid.hpp"
-#include "voxdag/builders/solid/winding/arc_tangent.hpp"
 #include "voxdag/builders/solid/winding/boundary_caps.hpp"
 #include "voxdag/builders/solid/winding/edge_tree.hpp"
 #include "voxdag/builders/solid/winding/winding_tree.hpp"
@@ -82,18 +81,6 @@ void remove_triangles(Mesh& mesh, double part, std::mt19937& rng) {
 void flip_triangles(Mesh& mesh, double part, std::mt19937& rng) {
   for (Triangle& t : mesh.triangles)
     if (std::uniform_real_distribution<>()(rng) < part) std::swap(t[0], t[1]);
-}
-
-TEST(ArcTangent, IsThatOfTheLibrary) {
-  std::mt19937 rng(1);
-  std::uniform_real_distribution<double> exponent(-20, 20);
-  for (int i = 0; i < 100'000; ++i) {
-    const double y = std::exp(exponent(rng)) * (rng() % 2 ? 1 : -1),
-                 x = std::exp(exponent(rng)) * (rng() % 2 ? 1 : -1);
-    ASSERT_NEAR(arc_tangent(y, x), std::atan2(y, x), 1e-15) << y << " " << x;
-  }
-  for (const double y : {-1.0, 0.0, 1.0})
-    for (const double x : {-1.0, 0.0, 1.0}) EXPECT_NEAR(arc_tangent(y, x), std::atan2(y, x), 1e-15);
 }
 
 TEST(WindingTree, ErrorsAreWithinTheirBounds) {

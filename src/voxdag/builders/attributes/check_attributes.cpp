@@ -11,6 +11,7 @@
 #include "voxdag/builders/attributes/material_cells.hpp"
 #include "voxdag/builders/pieces/duplicate_surfaces.hpp"
 #include "voxdag/builders/pieces/split_triangles.hpp"
+#include "voxdag/core/angles.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/per_thread.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
@@ -38,7 +39,8 @@ double color_error(Value8 stored, const std::uint8_t (&exact)[3]) {
 double degrees_between(Vec3f a, Vec3f b) {
   const Vec3d apart = Vec3d(a) - Vec3d(b);
   const double chord = std::sqrt(dot(apart, apart));
-  return 2 * std::asin(std::min(chord / 2, 1.0)) * 180 / std::numbers::pi;
+  const double sine = std::min(chord / 2, 1.0);  // of half of the angle
+  return 2 * arc_tangent(sine, std::sqrt(1 - sine * sine)) * 180 / std::numbers::pi;
 }
 
 /// Returns whether the normals agree enough that their mean is the stored direction, whatever

@@ -43,4 +43,8 @@ ResolvedOutput resolve_output(const fs::path& path) {
   }
 }
 
+std::filesystem::path output_path_of(int descriptor) {
+  return "/proc/self/fd/" + std::to_string(descriptor);
+}
+
 }  // namespace voxdag

@@ -12,4 +12,7 @@ struct ResolvedOutput {
 
 ResolvedOutput resolve_output(const std::filesystem::path& path);
 
+/// Returns the path by which resolve_output() finds a descriptor of this process.
+std::filesystem::path output_path_of(int descriptor);
+
 }  // namespace voxdag

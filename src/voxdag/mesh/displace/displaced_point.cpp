@@ -59,7 +59,8 @@ double edge_texel_density(const DisplacedMesh& mesh, CornerIndex edge) {
   const CornerIndex end = next_corner(edge);
   const Vec2f along = d.uv.linear(mesh.uv(end) - mesh.uv(edge));
   const Vec3d length = Vec3d(mesh.position(end)) - Vec3d(mesh.position(edge));
-  const double texels = std::hypot(along.x * w, along.y * h);
+  const double across = along.x * w, down = along.y * h;
+  const double texels = std::sqrt(across * across + down * down);
   const double world = std::sqrt(dot(length, length));
   return world > 0 ? texels / world : 0;
 }

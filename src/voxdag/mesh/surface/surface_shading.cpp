@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "voxdag/core/angles.hpp"
 #include "voxdag/image/color.hpp"
 #include "voxdag/mesh/surface/surface_tables.hpp"
 
@@ -163,7 +164,8 @@ bool SurfaceShading::may_be_uniform(std::uint32_t t, std::span<const Vec2f> poly
     lo[static_cast<int>(axis)] = unpack_component(static_cast<float>(texels.lo[axis]));
     hi[static_cast<int>(axis)] = unpack_component(static_cast<float>(texels.hi[axis]));
   }
-  return dot(normalized_or(lo, {}), normalized_or(hi, {})) >= std::cos(2 * normal_error) - 1e-5f;
+  return dot(normalized_or(lo, {}), normalized_or(hi, {})) >=
+         static_cast<float>(cosine_of(2 * normal_error)) - 1e-5f;
 }
 
 bool SurfaceShading::is_alpha_masked(std::uint32_t t, std::span<const Vec2f> polygon) const {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "voxdag/core/angles.hpp"
+
 namespace voxdag {
 
 Vec3f SurfaceTables::mean_normal(std::uint32_t t, std::span<const Vec2f> polygon,
@@ -70,7 +72,7 @@ bool SurfaceTables::is_direction_near(std::uint32_t t, const ResolvedMaterial& m
   direction = unit_or_zero(direction);
   const CornerTangents corners = material.normal_texture ? tangents[t] : CornerTangents{};
   if (corners.tangents == nullptr) {
-    const float least = std::cos(error);
+    const auto least = static_cast<float>(cosine_of(error));
     const Vec3f* const n = normals(t);
     if (n == nullptr || (n[0] == n[1] && n[0] == n[2])) {
       const Vec3f normal = n == nullptr ? face_normal(mesh, t) : n[0];
@@ -91,7 +93,7 @@ bool SurfaceTables::is_direction_near(std::uint32_t t, const ResolvedMaterial& m
   // Inside the polygon a frame may turn slightly more than at its corners.
   const float left = error - 1.25f * turn;
   if (!(left > 0)) return false;
-  const float least = std::cos(std::min(left, 1.5f));
+  const auto least = static_cast<float>(cosine_of(std::min(left, 1.5f)));
   const Texture::Bounds texels =
       bounds_of(*material.normal_texture, polygon, uv(t), material.normal_uv);
   const Vec3f local = center.to_local(direction);

@@ -83,7 +83,7 @@ TangentTable::TangentTable(
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3f a = normalized_or(p[(c + 1) % 3] - p[c], {}),
                   b = normalized_or(p[(c + 2) % 3] - p[c], {});
-      const float angle = std::acos(std::clamp(dot(a, b), -1.0f, 1.0f));
+      const auto angle = static_cast<float>(arc_cosine(std::clamp(dot(a, b), -1.0f, 1.0f)));
       Vec3f& sum = sums[corner_of(t, c, mirrored)];
       sum = sum + along_u * angle;
     }

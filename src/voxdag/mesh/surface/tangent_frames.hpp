@@ -10,6 +10,7 @@
 #include <functional>
 #include <vector>
 
+#include "voxdag/core/angles.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
@@ -47,7 +48,7 @@ inline TangentFrame make_frame(Vec3f normal, Vec3f tangent, float handedness) {
 inline float angle_between(const TangentFrame& a, const TangentFrame& b) {
   const float trace =
       dot(a.tangent, b.tangent) + dot(a.bitangent, b.bitangent) + dot(a.normal, b.normal);
-  return std::acos(std::clamp((trace - 1) / 2, -1.0f, 1.0f));
+  return static_cast<float>(arc_cosine(std::clamp((trace - 1) / 2, -1.0f, 1.0f)));
 }
 
 /// The tangents of one triangle.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "voxdag/builders/pieces/surface_sum.hpp"
+#include "voxdag/core/angles.hpp"
 #include "voxdag/core/srgb.hpp"
 
 namespace voxdag {
@@ -144,7 +145,8 @@ std::optional<SurfaceSum> CellAppearance::unlit_sum_if_uniform(const Cell& cell)
     add_piece(sum, cell, cell.pieces[i], sampler_.sample(cell, cell.pieces[i], corners[i]));
   if (!(sum.area > 0)) return std::nullopt;
   const SurfaceSample mean{sum.color * (1 / sum.area), 1, sum.direction() * (1 / sum.area)};
-  const float least_cosine = std::cos(std::min(settings_.normal_error, std::numbers::pi_v<float>));
+  const auto least_cosine =
+      static_cast<float>(cosine_of(std::min(settings_.normal_error, std::numbers::pi_v<float>)));
   const float least = least_cosine * std::sqrt(dot(mean.normal, mean.normal));
   for (std::size_t i = 0; i < cell.pieces.size(); ++i) {
     const SurfaceTriangle& triangle = cell.triangle_of(cell.pieces[i]);

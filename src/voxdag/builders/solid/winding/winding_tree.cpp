@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "voxdag/builders/solid/winding/arc_tangent.hpp"
 #include "voxdag/builders/solid/winding/morton_order.hpp"
 #include "voxdag/builders/solid/winding/winding_point.hpp"
+#include "voxdag/core/angles.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/core/parallel/polled_sort.hpp"
 

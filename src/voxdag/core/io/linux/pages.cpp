@@ -1,6 +1,7 @@
 #include "voxdag/core/io/pages.hpp"
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -22,8 +23,11 @@ void* map_pages(std::size_t bytes, bool may_be_huge) noexcept {
   auto* begin = static_cast<char*>(memory);
   const std::size_t head = -reinterpret_cast<std::uintptr_t>(begin) & (kHugePage - 1);
   if (head != 0) ::munmap(begin, head);
-  ::munmap(begin + head + bytes, slack - head);
   begin += head;
+  // Pages of 64-bit ARM may have 64 KiB: then the last one may hold more than `bytes`.
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t used = (bytes + page - 1) / page * page;
+  if (used < bytes + slack - head) ::munmap(begin + used, bytes + slack - head - used);
 #ifdef MADV_HUGEPAGE
   ::madvise(begin, bytes, MADV_HUGEPAGE);
 #endif

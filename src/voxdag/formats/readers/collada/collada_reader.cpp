@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "voxdag/core/angles.hpp"
 #include "voxdag/formats/readers/collada/collada_document.hpp"
 #include "voxdag/formats/readers/collada/collada_geometry.hpp"
 #include "voxdag/formats/readers/collada/collada_materials.hpp"
@@ -20,7 +21,7 @@ constexpr int kMaxNodeDepth = 200;  ///< Of nodes in nodes, with those that they
 
 AffineTransform rotation_about(Vec3d axis, double degrees) {
   const Vec3d u = normalized_or(axis, {0, 0, 1});
-  const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+  const auto [s, c] = sine_and_cosine(degrees * std::numbers::pi / 180);
   AffineTransform turn;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3d e = turn.columns[i];

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "voxdag/core/angles.hpp"
+
 namespace voxdag {
 namespace {
 
@@ -39,8 +41,7 @@ UvTransform uv_transform(const GltfValue& texture_info) {
   const std::vector<double> offset = transform["offset"].numbers(2);
   const std::vector<double> scale = transform["scale"].numbers(2);
   const double sx = scale.empty() ? 1 : scale[0], sy = scale.empty() ? 1 : scale[1];
-  const double angle = transform["rotation"].number(0);
-  const double c = std::cos(angle), s = std::sin(angle);
+  const auto [s, c] = sine_and_cosine(transform["rotation"].number(0));
   const auto f = [](double x) { return static_cast<float>(x); };
   return {f(c * sx),
           f(s * sy),

@@ -1,0 +1,21 @@
+# Cross-compiles for 64-bit ARM (aarch64) with Debian's crossbuild-essential-arm64 (preset arm64).
+# scripts/arm64.sh puts Debian's packages for that processor into the folder VOXDAG_ARM64_SYSTEM, and QEMU
+# runs the programs (qemu-user-static).
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(VOXDAG_ARM64_SYSTEM ${CMAKE_CURRENT_LIST_DIR}/../build/arm64-system CACHE PATH "Folder with the packages for arm64")
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES VOXDAG_ARM64_SYSTEM)
+file(REAL_PATH ${VOXDAG_ARM64_SYSTEM} CMAKE_SYSROOT)
+if(NOT EXISTS ${CMAKE_SYSROOT}/usr/include)
+  message(FATAL_ERROR "voxdag: ${CMAKE_SYSROOT} has no packages for arm64; scripts/arm64.sh installs them")
+endif()
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+foreach(kind LIBRARY INCLUDE PACKAGE)
+  set(CMAKE_FIND_ROOT_PATH_MODE_${kind} ONLY)
+endforeach()
+find_program(VOXDAG_QEMU NAMES qemu-aarch64-static qemu-aarch64)
+if(VOXDAG_QEMU)
+  set(CMAKE_CROSSCOMPILING_EMULATOR ${VOXDAG_QEMU} -L ${CMAKE_SYSROOT})
+endif()
