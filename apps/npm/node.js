@@ -1,5 +1,4 @@
 /** The entry for Node: workers are threads, and there is no picture. */
-import os from 'node:os';
 import { Worker } from 'node:worker_threads';
 import { provide } from './page/file/host.js';
 import { text } from './texts.js';
@@ -41,7 +40,7 @@ class Thread {
   }
 }
 
-provide({ text, makeWorker: (script) => new Thread(script), threads: () => os.cpus().length });
+provide({ text, makeWorker: (script) => new Thread(script) });
 
 /** Pages that a server renders import it, too. @returns {never} */
 export function createViewer() {
