@@ -1,6 +1,7 @@
 /**
  * Takes pictures of every panel, to be looked at: node panels.mjs FILE.vdag OUT/ [panel...] ; VOXDAG names the program, and
- * VOXDAG_BROWSER the browser (chromium). Each at four sizes, light and dark: OUT/panel-WIDTHxHEIGHT-scheme.png.
+ * VOXDAG_BROWSER the browser (chromium); firefox needs a display: xvfb-run -a node panels.mjs ... Each at four sizes, light and
+ * dark: OUT/panel-WIDTHxHEIGHT-scheme.png.
  */
 import fs from 'node:fs';
 import path from 'node:path';
