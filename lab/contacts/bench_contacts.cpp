@@ -209,11 +209,10 @@ ContactsRun bench_contacts(const ContactsPlan& plan, Progress& progress) {
         name, "voxdag", [&] { closest(scene, points, most, found); },
         [&](std::uint32_t i) { return found[i].is_found; });
     if (!embree) return;
-    bench
-        .measure(
-            name, "embree", [&] { embree->find(places, most, other); },
-            [&](std::uint32_t i) { return other[i] < HUGE_VAL; })
-        .difference_voxels = mean_difference(found, other, scene.grid.voxel_size);
+    ContactsRate& rate = bench.measure(
+        name, "embree", [&] { embree->find(places, most, other); },
+        [&](std::uint32_t i) { return other[i] < HUGE_VAL; });
+    rate.difference_voxels = mean_difference(found, other, scene.grid.voxel_size);
   };
   closest_of("closest near", asked.near_points, asked.near, reach);
   closest_of("closest far", asked.far_points, asked.far, HUGE_VAL);

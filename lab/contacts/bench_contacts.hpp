@@ -25,7 +25,8 @@ struct ContactsRate {
   double per_ms = 0;      ///< Of wall-clock time, on all threads.
   double per_cpu_ms = 0;  ///< Of processor time, all threads together.
   double positive = 0;    ///< The part of the queries that touch, hit or find something.
-  /// Of rivals: the mean difference to voxdag's distances, in voxels, where both find something.
+  /// The mean difference between a rival's distances and voxdag's, in voxels, where both find
+  /// something.
   double difference_voxels = 0;
 };
 
