@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 const fs::path kRepository = VOXDAG_SOURCE_DIR;
 
-/// What Linux has and other systems of POSIX lack.
+/// Calls and headers that Linux has and other POSIX systems lack.
 constexpr const char* kLinuxAlone[] = {
     "\"/proc/",        "<linux/",         "<malloc.h>",       "<sys/epoll.h>",   "<sys/inotify.h>",
     "<sys/prctl.h>",   "<sys/random.h>",  "<sys/sendfile.h>", "<sys/syscall.h>", "MADV_DONTFORK",
@@ -21,7 +21,7 @@ constexpr const char* kLinuxAlone[] = {
     "copy_file_range", "memfd_create(",   "mremap(",          "pipe2(",          "posix_fallocate(",
     "renameat2(",      "sched_getaffini", "sched_setaffini"};
 
-/// What C libraries round in different ways, and glibc on different processors.
+/// Functions that C libraries round in different ways, as glibc does on different processors.
 constexpr const char* kInexact[] = {"std::sin(",  "std::cos(",  "std::tan(",   "std::asin(",
                                     "std::acos(", "std::atan(", "std::atan2(", "std::hypot(",
                                     "std::cbrt(", "std::sinh(", "std::cosh(",  "std::tanh("};

@@ -8,10 +8,10 @@
 
 namespace voxdag {
 
-/// What carve() makes around the space.
+/// The places that carve() writes around the space.
 enum class CarveForm {
-  kWall,   ///< The places beside it, over faces, edges and corners: a wall of one voxel.
-  kSolid,  ///< All other places of its box, and of one more voxel on each side.
+  kWall,   ///< Those beside it, over faces, edges and corners: a wall of one voxel.
+  kSolid,  ///< All others of its box, and of one more voxel on each side.
 };
 
 /// Carves the space that a body can reach from `seed` out of solid matter. The body is the box of

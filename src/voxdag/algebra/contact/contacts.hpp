@@ -51,13 +51,14 @@ struct OrientedBox {
 bool overlaps(const ContactScene& scene, const Capsule& shape);
 bool overlaps(const ContactScene& scene, const OrientedBox& shape);
 
-/// Where a moving shape first touches a voxel.
+/// The first contact of a moving shape with a voxel.
 struct SweepHit {
   bool hit = false;
   double t = 1;             ///< The part of the motion until then, 0 to 1.
   Vec3i voxel{-1, -1, -1};  ///< One of those that are touched.
-  Vec3d point{};            ///< Of the voxel, where it is touched.
-  /// From the voxel to the core, of unit length; 0 if the core touches the voxel at the start.
+  Vec3d point{};            ///< The place where the shape touches the voxel.
+  /// The direction from the voxel to the core, of unit length; 0 if the core touches the voxel at
+  /// the start.
   Vec3d normal{};
 };
 
@@ -72,10 +73,10 @@ struct ClosestVoxel {
   bool is_found = false;
   /// The distance from the voxel to the core, less the radius: negative where they overlap.
   double distance = std::numeric_limits<double>::infinity();
-  /// Of several: the one that contains the point, if the shape is one, else the one with the least
-  /// x, then y, then z.
+  /// Among several equally near: the one that contains the point, if the shape is a point, else the
+  /// one with the least x, then y, then z.
   Vec3i voxel{-1, -1, -1};
-  Vec3d point{};   ///< Of the voxel, nearest to the core.
+  Vec3d point{};   ///< The voxel's point that is nearest to the core.
   Vec3d normal{};  ///< From there to the core, of unit length; 0 if the core touches the voxel.
 };
 

@@ -14,7 +14,7 @@ namespace voxdag {
 
 inline constexpr double kNoCost = std::numeric_limits<double>::infinity();
 
-/// What a walk looks for.
+/// The cells among which LeastCell chooses.
 enum class CellKind {
   kVoxels,
   kEmpty  ///< Empty places of the grid: cubes of 1, 2, 4... voxels a side.

@@ -38,7 +38,7 @@ HWY_ATTR inline double gaussian(double squared) {
   return p * p;
 }
 
-/// Where a row of voxels crosses the splat.
+/// The voxels [begin, end) of a row that a splat may reach.
 struct Span {
   int begin, end;
 };

@@ -11,8 +11,8 @@
 namespace voxdag {
 namespace {
 
-/// What a first pass finds: the box of the centres, and the boxes of the splats, by the binary
-/// exponents of their largest standard deviations.
+/// The first pass finds the box of the centres, and the boxes of the splats, one for each binary
+/// exponent of their largest standard deviations.
 struct SplatExtent {
   Box3d centers = Box3d::empty();
   std::array<Box3d, 300> boxes;

@@ -17,6 +17,7 @@
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/volumes/volume_grid.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
@@ -168,10 +169,7 @@ class OctoMap final : public VoxelSource {
     if (voxels > kMaxMapVoxels)
       fail(data_,
            "has " + std::to_string(voxels) + " voxels, more than " + std::to_string(kMaxMapVoxels));
-    std::int64_t side = 1;
-    for (int axis = 0; axis < 3; ++axis) side = std::max(side, hi[axis] - lo[axis]);
-    grid_.levels = std::max(kMinLevels,
-                            static_cast<int>(std::bit_width(static_cast<std::uint64_t>(side) - 1)));
+    grid_.levels = grid_of_scene(path_, lo, hi).levels;
     lo_ = lo;
     grid_.origin = static_cast<Vec3d>(lo - Vec3l{kOctoMapCentre, kOctoMapCentre, kOctoMapCentre}) *
                    grid_.voxel_size;

@@ -12,13 +12,14 @@
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/volumes/block_color.hpp"
 #include "voxdag/formats/imports/volumes/nbt.hpp"
+#include "voxdag/formats/imports/volumes/volume_grid.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 namespace {
 
-/// What a number of a block stands for.
+/// The meaning of a number in the palette: whether it sets a voxel, and the colour.
 struct BlockLook {
   bool is_set = false;
   Rgb8 color{};
@@ -52,7 +53,7 @@ struct BlockBox {
 class Schematic final : public VoxelSource {
  public:
   explicit Schematic(const std::filesystem::path& path)
-      : mapping_(path), nbt_(path, mapping_.text()) {
+      : path_(path), mapping_(path), nbt_(path, mapping_.text()) {
     read(nbt_.root());
     if (boxes_.empty()) nbt_.fail(0, "has no blocks");
     find_extent();
@@ -283,18 +284,13 @@ class Schematic final : public VoxelSource {
       lo = min(lo, box.lo);
       hi = max(hi, box.lo + box.size);
     }
-    std::int64_t side = 1;
-    for (int axis = 0; axis < 3; ++axis) side = std::max(side, hi[axis] - lo[axis]);
-    if (side > kMaxSide)
-      nbt_.fail(0, "the regions are " + std::to_string(side) + " blocks long, more than 1048576");
-    grid_.levels = std::max(kMinLevels,
-                            static_cast<int>(std::bit_width(static_cast<std::uint64_t>(side) - 1)));
+    grid_ = grid_of_scene(path_, lo, hi);
     lo_ = lo;
-    grid_.origin = static_cast<Vec3d>(lo);
   }
 
   static constexpr std::int64_t kMaxSide = std::int64_t{1} << kMaxLevels, kMaxPalette = 1 << 20;
 
+  std::filesystem::path path_;
   MappedFile mapping_;
   Nbt nbt_;
   std::vector<BlockBox> boxes_;

@@ -56,6 +56,20 @@ void check_placement(const std::filesystem::path& path, const Vec3d& spacing,
 
 }  // namespace
 
+Grid grid_of_scene(const std::filesystem::path& path, Vec3l lo, Vec3l hi) {
+  constexpr std::int64_t kMaxSide = std::int64_t{1} << kMaxLevels;
+  const Vec3l sides = hi - lo;
+  const std::int64_t longest = std::max({sides.x, sides.y, sides.z, std::int64_t{1}});
+  if (longest > kMaxSide)
+    throw Error(path.string(), "",
+                "the scene is " + std::to_string(longest) + " voxels long, more than 1048576");
+  Grid grid;
+  const auto side = static_cast<std::uint64_t>(longest);
+  grid.levels = levels_of({side, side, side});
+  grid.origin = static_cast<Vec3d>(lo);
+  return grid;
+}
+
 double VolumeMap::Axis::first_cube(double count) const {
   return std::ceil(count * cubes_per_voxel - 0.5);
 }

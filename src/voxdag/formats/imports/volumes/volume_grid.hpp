@@ -19,6 +19,10 @@ struct VolumePlacement {
   bool is_known = false;              ///< The header names a place or a spacing.
 };
 
+/// Returns the grid of voxels of side 1 that begins at `lo` and holds the voxels [lo, hi), at least
+/// one. Throws Error if a side of them is longer than 1,048,576.
+Grid grid_of_scene(const std::filesystem::path& path, Vec3l lo, Vec3l hi);
+
 /// Maps the voxels of a volume to those of a grid, which are cubes along the axes of the world.
 /// Axes that point along other axes of the world, or against them, are followed exactly. A voxel
 /// that is a box becomes the cubes whose centres lie in it; their side is the least one of the box.

@@ -1,4 +1,3 @@
-#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -8,6 +7,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/volumes/volume_grid.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
 #include "voxdag/formats/imports/volumes/vox_file.hpp"
 
@@ -198,15 +198,8 @@ class Vox : public VoxelSource {
       throw Error(path_.string(), "",
                   "the scene has " + std::to_string(voxels) + " voxels, more than " +
                       std::to_string(kMaxSceneVoxels));
-    std::int64_t last = 0;
-    for (int axis = 0; axis < 3; ++axis) last = std::max(last, hi[axis] - lo[axis]);
-    grid_.levels =
-        std::max(kMinLevels, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(last))));
-    if (grid_.levels > kMaxLevels)
-      throw Error(path_.string(), "",
-                  "the scene is " + std::to_string(last + 1) + " voxels long, more than 1048576");
+    grid_ = grid_of_scene(path_, lo, hi + Vec3l{1, 1, 1});
     lo_ = lo;
-    grid_.origin = static_cast<Vec3d>(lo);
   }
 
   std::filesystem::path path_;
