@@ -46,7 +46,7 @@ render sponge.ply -r 64 --size 64x64 --samples 1 --ao 4 -o cube.png
 build yard.ply -r 700 -o yard.vdag
 build yard.ply -r 300 --method sort --bounds -3,-1,-3,4,3,5 -o part.vdag
 build yard.ply -r 300 --rotate y:33,x:12 --scale 1.7 -o turned.vdag
-build yard.ply -r 256 --solid winding -o body.vdag
+build yard.ply -r 16 --solid winding -o body.vdag
 build sponge.ply -r 200 --solid -o sponge.vdag
 build cube.obj -r 200 --color --normal --material-ids -o cube.vdag
 build cube.obj -r 128 --color --color-bound 0 --normal --normal-bound 1 --alpha keep -o exact.vdag
@@ -61,10 +61,10 @@ convert cube.vdag --compact --wire -o wire.vdag
 convert cube.vdag --levels 6 --color-bound 0.04 --normal-bound 6 -o coarse.vdag
 edit cube.vdag --script edits.csv -o edited.vdag
 combine cube.vdag edited.vdag --xor -o xor.vdag
-dilate sponge.vdag --by 2 -o grown.vdag
-hollow sponge.vdag --thickness 3 -o hollow.vdag
+dilate sponge.vdag --steps 2 -o grown.vdag
+hollow sponge.vdag --wall 0.02 -o hollow.vdag
 rotate edited.vdag --axis z --turns 1 -o quarter.vdag
-coarsen yard.vdag --by 4 -o quarter_yard.vdag
+coarsen yard.vdag --by 2 -o quarter_yard.vdag
 trace yard.vdag --rays rays.npy -o hits.npy
 trace small.vdag --in-place --rays rays.npy -o hits_in_place.npy
 trace cube.vdag --rays rays.npy -o hits_cube.npy
@@ -80,8 +80,9 @@ export edited.vdag -o edited.glb
 export edited.vdag -o edited.vox
 export edited.vdag -o edited.schem
 export cube.vdag -o cube_out.obj --texture
-export sponge.vdag -o sponge.stl --smooth
-export sponge.vdag -o sponge.3mf --smooth
+coarsen sponge.vdag --by 2 -o little.vdag
+export little.vdag -o little.stl --smooth
+export little.vdag -o little.3mf --smooth
 export cube.vdag -o cube.html
 render yard.vdag --size 96x64 -o yard.png --pass normal=normal.exr --pass depth=depth.exr --ao 8
 render cube.vdag --size 64x64 --bounces 2 --ao 8 --environment sunset -o paths.exr

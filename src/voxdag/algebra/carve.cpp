@@ -7,10 +7,10 @@
 #include "voxdag/algebra/combine.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/algebra/grow.hpp"
+#include "voxdag/algebra/query/voxel_moments.hpp"
 #include "voxdag/algebra/select_regions.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/morton.hpp"
-#include "voxdag/stored/svdag/for_each_voxel.hpp"
 
 namespace voxdag {
 namespace {
@@ -31,47 +31,6 @@ Svdag full_grid(int levels) {
     full.level_begin[level] = full.nodes.size();
   return full;
 }
-
-/// Moves one side of a box to the voxels of a cell of the DAG that lie beyond it.
-class SideFinder {
- public:
-  SideFinder(const SvdagView& dag, int axis, bool is_high)
-      : dag_(dag), axis_(axis), is_high_(is_high) {}
-
-  /// Returns the coordinate of the outermost voxel.
-  std::int32_t find() {
-    best_ = is_high_ ? -1 : std::int32_t{1} << dag_.levels;
-    visit(0, dag_.root, 0);
-    return best_;
-  }
-
- private:
-  /// `first` is the coordinate of the first voxel of the cell.
-  void visit(int level, std::uint32_t node, std::int32_t first) {
-    const std::int32_t size = std::int32_t{1} << (dag_.levels - level);
-    if (is_high_ ? first + size - 1 <= best_ : first >= best_) return;
-    if (level == dag_.levels - 2) {
-      for (int k = 0; k < 4; ++k)
-        if ((dag_.leaf_blocks[node] & kLeafSlabs[axis_][k]) != 0)
-          best_ = is_high_ ? std::max(best_, first + k) : std::min(best_, first + k);
-      return;
-    }
-    const std::uint32_t* const words = dag_.nodes + node;
-    // The outer half first.
-    for (int outer = 0; outer < 2; ++outer)
-      for (int child = 0; child < 8; ++child) {
-        const int half = child >> axis_ & 1;
-        if ((half == 1) != (is_high_ == (outer == 0)) || (child_mask(words) >> child & 1) == 0)
-          continue;
-        visit(level + 1, child_pointer(words, child), first + half * (size / 2));
-      }
-  }
-
-  const SvdagView& dag_;
-  int axis_;
-  bool is_high_;
-  std::int32_t best_ = 0;
-};
 
 /// Selects the component that has a voxel. The state of a cell is 0 if the voxel is elsewhere, else
 /// 1 plus the cell's level.
@@ -140,20 +99,10 @@ Vec3i voxel_at(const Grid& grid, Vec3d place) {
   return voxel;
 }
 
-Box3i box_of_voxels(const SvdagView& dag) {
-  Box3i box{};
-  if (dag.is_empty()) return box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lo[axis] = SideFinder(dag, axis, false).find();
-    box.hi[axis] = SideFinder(dag, axis, true).find() + 1;
-  }
-  return box;
-}
-
 Svdag carve(const SvdagView& dag, Vec3i seed, Vec3i half, CarveForm form, Work work) {
   const bool is_in_grid = static_cast<std::uint32_t>(seed.x | seed.y | seed.z) >> dag.levels == 0;
   const Svdag full = full_grid(dag.levels);
-  const Box3i box = box_of_voxels(dag);
+  const Box3i box = moments_of(dag, work).bounds;
   Svdag reached;
   {
     const Svdag within = crop(full.view(), box, work);
@@ -174,7 +123,7 @@ Svdag carve(const SvdagView& dag, Vec3i seed, Vec3i half, CarveForm form, Work w
     const Svdag thick = dilate(space.view(), 1, Neighbours::k26, work);
     return combine(thick.view(), space.view(), SetOperation::kDifference, work);
   }
-  const Box3i used = box_of_voxels(space.view());
+  const Box3i used = moments_of(space.view(), work).bounds;
   const Svdag solid = crop(full.view(), {used.lo - Vec3i{1, 1, 1}, used.hi + Vec3i{1, 1, 1}}, work);
   return combine(solid.view(), space.view(), SetOperation::kDifference, work);
 }

@@ -1,6 +1,5 @@
 #pragma once
 /// Finds the space that a body can reach among voxels.
-#include "voxdag/core/box.hpp"
 #include "voxdag/core/grid.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
@@ -32,9 +31,5 @@ Vec3i half_of_capsule(double height, double radius, int up, double voxel_size);
 
 /// Returns the voxel of a finite place in the world; one outside of the grid for places outside.
 Vec3i voxel_at(const Grid& grid, Vec3d place);
-
-/// Returns the least half-open box of all voxels; lo = hi = 0 if there are none. `dag` must be
-/// valid.
-Box3i box_of_voxels(const SvdagView& dag);
 
 }  // namespace voxdag
