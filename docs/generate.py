@@ -53,6 +53,7 @@ MORE = {
     "edit": ["editing.md"],
     "diff": ["json.md#diff"],
     "components": ["json.md#components"],
+    "materials": ["import.md#labels", "viewer.md#materials-and-labels", "json.md#materials"],
     "info": ["json.md#info"],
     "verify": ["attributes.md#checks", "json.md#verify"],
     "export": ["export.md", "interop.md", "viewer.md#sending-a-scene", "arrays.md#voxels"],

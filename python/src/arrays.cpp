@@ -17,6 +17,36 @@ namespace {
 
 std::string text_of(double value) { return py::cast<std::string>(py::str(py::float_(value))); }
 
+constexpr const char* kWholeNumbers = "whole numbers";
+
+/// Calls store(i, value) for the values of an array of this kind, in C order. Refuses those that
+/// are not whole or not in range; also NaN.
+template <class Store>
+void take_whole(const py::array& given, char kind, const char* name, std::int64_t least,
+                std::int64_t most, const Store& store) {
+  const std::string range =
+      "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+  const auto take = [&](const auto& values) {
+    for (py::ssize_t i = 0; i < values.size(); ++i) {
+      const auto value = values.data()[i];
+      if constexpr (std::is_floating_point_v<std::remove_cv_t<decltype(value)>>) {
+        if (!(value >= static_cast<double>(least) && value <= static_cast<double>(most) &&
+              value == std::floor(value)))
+          refuse(name, text_of(value), range);
+      } else if (std::cmp_less(value, least) || std::cmp_greater(value, most)) {
+        refuse(name, std::to_string(value), range);
+      }
+      store(static_cast<std::size_t>(i), static_cast<std::int64_t>(value));
+    }
+  };
+  if (kind == 'f')
+    take(Array<double>(given));
+  else if (kind == 'u')
+    take(Array<std::uint64_t>(given));
+  else
+    take(Array<std::int64_t>(given));
+}
+
 }  // namespace
 
 char kind_of(const py::array& array, const char* name, std::string_view allowed,
@@ -36,39 +66,23 @@ void check_rows(const py::array& array, const char* name) {
 
 std::vector<Vec3<std::int64_t>> whole_rows_of(const py::array& given, const char* name,
                                               std::int64_t least, std::int64_t most) {
-  const char kind = kind_of(given, name, "iuf", "whole numbers");
+  const char kind = kind_of(given, name, "iuf", kWholeNumbers);
   check_rows(given, name);
-  const std::string range =
-      "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
   std::vector<Vec3<std::int64_t>> rows(static_cast<std::size_t>(given.shape(0)));
-  // Refuses what is not in range; also NaN.
-  const auto take = [&](const auto& values) {
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      for (int c = 0; c < 3; ++c) {
-        const auto value = values.data()[3 * i + static_cast<std::size_t>(c)];
-        using Value = std::remove_cv_t<decltype(value)>;
-        bool is_allowed = false;
-        if constexpr (std::is_floating_point_v<Value>)
-          is_allowed = value >= static_cast<Value>(least) && value <= static_cast<Value>(most) &&
-                       value == std::floor(value);
-        else
-          is_allowed = std::cmp_greater_equal(value, least) && std::cmp_less_equal(value, most);
-        if (!is_allowed) {
-          if constexpr (std::is_floating_point_v<Value>)
-            refuse(name, text_of(value), range);
-          else
-            refuse(name, std::to_string(value), range);
-        }
-        rows[i][c] = static_cast<std::int64_t>(value);
-      }
-  };
-  if (kind == 'f')
-    take(Array<double>(given));
-  else if (kind == 'u')
-    take(Array<std::uint64_t>(given));
-  else
-    take(Array<std::int64_t>(given));
+  take_whole(given, kind, name, least, most, [&](std::size_t i, std::int64_t value) {
+    rows[i / 3][static_cast<int>(i % 3)] = value;
+  });
   return rows;
+}
+
+std::vector<std::int64_t> whole_values_of(const py::array& given, const char* name,
+                                          std::int64_t least, std::int64_t most) {
+  const char kind = kind_of(given, name, "iuf", kWholeNumbers);
+  if (given.ndim() != 1) throw py::value_error(std::string(name) + " must have the shape (N,)");
+  std::vector<std::int64_t> values(static_cast<std::size_t>(given.shape(0)));
+  take_whole(given, kind, name, least, most,
+             [&](std::size_t i, std::int64_t value) { values[i] = value; });
+  return values;
 }
 
 std::vector<Vec3i> voxels_of(const py::array& given, const char* name) {

@@ -49,6 +49,10 @@ std::vector<Vec3<T>> rows_of(const pybind11::array& given, const char* name) {
 std::vector<Vec3<std::int64_t>> whole_rows_of(const pybind11::array& given, const char* name,
                                               std::int64_t least, std::int64_t most);
 
+/// Returns the values of an array of shape (N,) that are whole, as whole_rows_of() does.
+std::vector<std::int64_t> whole_values_of(const pybind11::array& given, const char* name,
+                                          std::int64_t least, std::int64_t most);
+
 /// Returns voxels: whole_rows_of() in the range of 32 bits.
 std::vector<Vec3i> voxels_of(const pybind11::array& given, const char* name);
 

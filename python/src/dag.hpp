@@ -94,12 +94,15 @@ void warn(const std::string& text);
 
 /// Add the functions that make DAGs, and the methods of Dag, to the module.
 void add_makers(pybind11::module_& module);
+/// Part of add_makers().
+void add_importers(pybind11::module_& module);
 void add_rays(DagClass& dag);
 void add_rays(SnapshotClass& snapshot);
 void add_contacts(DagClass& dag);
 void add_contacts(SnapshotClass& snapshot);
 void add_queries(DagClass& dag);
 void add_edits(DagClass& dag);
+void add_materials(DagClass& dag);
 void add_exports(DagClass& dag);
 void add_pictures(DagClass& dag);
 void add_pictures(SnapshotClass& snapshot);

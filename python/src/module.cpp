@@ -110,6 +110,7 @@ formats, and pages.)")
   add_contacts(dag);
   add_queries(dag);
   add_edits(dag);
+  add_materials(dag);
   add_exports(dag);
   add_pictures(dag);
   add_live_edits(module);

@@ -108,20 +108,22 @@ def build(vertices, faces=None, *, resolution=None, pitch=None, bounds=None, sol
                          solid=solid, colors=colors)
 
 
-def from_points(points, *, resolution=None, pitch=None, bounds=None, colors=None):
+def from_points(points, *, resolution=None, pitch=None, bounds=None, colors=None, labels=None):
     """Builds the DAG of the voxels that hold points.
 
     points: (N, 3) real numbers in world units, or a point cloud of Open3D.
     resolution, pitch, bounds: as for build(). Points outside of bounds are left out.
     colors: (N, 3), sRGB: uint8, uint16, or real numbers from 0 to 1; a voxel has the mean of its
     points, in linear light.
+    labels: (N,) whole numbers, which become materials; a voxel has the one that is most frequent in
+    it, the smallest of equally frequent ones.
     """
     if hasattr(points, "points"):
         cloud, points = points, _numpy.asarray(points.points)
         if colors is None and cloud.has_colors():
             colors = _numpy.asarray(cloud.colors)
     return _voxdag.from_points(points, resolution=resolution, pitch=pitch, bounds=bounds,
-                               colors=colors)
+                               colors=colors, labels=labels)
 
 
 _io_open = _builtins.open

@@ -11,7 +11,7 @@ const std::vector<std::string> kCommands = {
     "build",  "convert", "info",       "verify",  "view",  "render",     "trace",
     "export", "scene",   "completion", "combine", "diff",  "components", "crop",
     "shift",  "mirror",  "rotate",     "dilate",  "erode", "fill",       "query",
-    "import", "coarsen", "hollow",     "edit",    "carve"};
+    "import", "coarsen", "hollow",     "edit",    "carve", "materials"};
 
 TEST(Usage, VersionBeginsWithItsNumber) {
   const ProcessResult result = run_voxdag({"--version"});

@@ -35,6 +35,9 @@ struct ImportArguments {
   std::string format, grid;         ///< As in VoxelSourceOptions.
   std::optional<double> threshold;  ///< For volumes.
   bool splats_are_points = false;
+  bool has_labels = false;
+  std::string label_field;
+  std::vector<std::string> keep, drop;
   bool is_grey = false;
   bool compact = false;
   std::uint64_t memory_limit = 0;
@@ -50,6 +53,10 @@ std::vector<std::string> warnings_of(const VoxelSource& source, const std::strin
 ImportedModel import_file(const ImportArguments& arguments, Work work, Session& session) {
   ImportOptions options = arguments.options;
   options.colors = !arguments.is_grey;
+  options.drops_labels = arguments.keep.empty();
+  options.labels = options.drops_labels ? arguments.drop : arguments.keep;
+  const LabelRequest labels =
+      arguments.has_labels ? LabelRequest(arguments.label_field) : std::nullopt;
   options.folder = std::filesystem::path(arguments.output).parent_path();
   if (options.folder.empty()) options.folder = ".";
   std::vector<std::unique_ptr<VoxelSource>> sources;
@@ -57,7 +64,7 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
     with_file_name(file, [&] {
       std::unique_ptr<VoxelSource> source = open_voxel_source(
           file, {arguments.threshold, !options.voxel_size && !options.origin, arguments.format,
-                 arguments.grid, arguments.splats_are_points, work});
+                 arguments.grid, arguments.splats_are_points, labels, work});
       print_warnings(warnings_of(*source, file), session);
       if (source->has_points() && !source->grid() && !options.resolution && !options.voxel_size)
         options.resolution = kDefaultResolution;
@@ -112,6 +119,14 @@ std::string splat_table(const ImportedModel& result) {
                          : "");
 }
 
+/// Returns the line of the summary that counts the labels; empty without labels.
+std::string label_table(const DagModel& model) {
+  const std::size_t count = model.metadata().attributes.labels.size();
+  return count > 0 ? fmt::format("  {:<14}{} (voxdag materials lists them)\n", "labels",
+                                 with_commas(count))
+                   : "";
+}
+
 double parse_color_bound(const std::string& text) {
   const double bound = parse_finite(text);
   if (!(bound >= 0 && bound <= 1)) throw std::invalid_argument("must be from 0 to 1");
@@ -134,6 +149,7 @@ void import(const ImportArguments& arguments, Session& session) {
   if (session.json) {
     const nlohmann::ordered_json json = {{"read", result.read},
                                          {"outside", result.outside},
+                                         {"unwanted", result.unwanted},
                                          {"not_finite", result.not_finite},
                                          {"too_large", result.too_large},
                                          {"voxels", counts.voxels},
@@ -145,15 +161,18 @@ void import(const ImportArguments& arguments, Session& session) {
     std::error_code unknown;
     const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
     fmt::print(
-        "{}: {} read{}{}, {} voxels of {}³, {}, {}\n{}{}", arguments.output,
+        "{}: {} read{}{}{}, {} voxels of {}³, {}, {}\n{}{}{}", arguments.output,
         with_commas(result.read),
         result.outside > 0 ? fmt::format(", {} of them outside", with_commas(result.outside)) : "",
+        result.unwanted > 0
+            ? fmt::format(", {} of them with other labels", with_commas(result.unwanted))
+            : "",
         result.not_finite > 0
             ? fmt::format(", {} of them not finite", with_commas(result.not_finite))
             : "",
         with_commas(counts.voxels), with_commas(model.grid().resolution()),
         human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
-        human_seconds(watch.since_start()), splat_table(result),
+        human_seconds(watch.since_start()), splat_table(result), label_table(model),
         transform_table(arguments.transform, custom_of(arguments.files.front(), arguments.format)));
   }
 }
@@ -168,7 +187,9 @@ void add_import_command(const Command& program, Session& session) {
                                       "0,0,0,100,100,20 -o street.vdag\n"
                                       "  voxdag import castle.vox -o castle.vdag\n"
                                       "  voxdag import head.nii.gz --threshold 300 -o head.vdag\n"
-                                      "  voxdag import scan.ply --voxel-size 0.05 -o scan.vdag\n\n"
+                                      "  voxdag import scan.ply --voxel-size 0.05 -o scan.vdag\n"
+                                      "  voxdag import city.las --voxel-size 0.5 --labels --drop 7 "
+                                      "-o city.vdag\n\n"
                                       "The file may have any number of points or voxels, in any "
                                       "order. Each point sets the voxel that it lies in; Gaussian "
                                       "splats set the voxels where they are opaque "
@@ -225,6 +246,21 @@ void add_import_command(const Command& program, Session& session) {
       "For splats: leave out those with a standard deviation of S or more (default: 1/64 "
       "of the longest side of the box of the centres, or of --bounds, rounded down to a "
       "power of two)");
+  command.flag(
+      "--labels", arguments->has_labels,
+      "Keep labels as materials: the values of a volume, the palette of .vox, the blocks of "
+      "Minecraft, the classification of .las, the field label, class, classification or "
+      "instance of other points");
+  command.text("--label-field", arguments->label_field, "NAME",
+               "For points: read the labels from this field, or in texts without names from the "
+               "column of this number; implies --labels");
+  const Option keep =
+      command.parsed("--keep", arguments->keep, parse_words, "LABEL,...",
+                     "Import only these labels, numbers or names; implies --labels");
+  command
+      .parsed("--drop", arguments->drop, parse_words, "LABEL,...",
+              "Import all but these labels; implies --labels")
+      .not_with(keep);
   command.flag("--points", arguments->splats_are_points,
                "For splats: read their centres as points");
   const Option no_colors =
@@ -243,6 +279,8 @@ void add_import_command(const Command& program, Session& session) {
   add_json_option(command, session);
   command.when_parsed([arguments, &session] {
     const std::string first = arguments->files.front();
+    arguments->has_labels |=
+        !arguments->label_field.empty() || !arguments->keep.empty() || !arguments->drop.empty();
     arguments->files = files_of(arguments->files);
     session.subject = arguments->files.front();
     if (arguments->output.empty())

@@ -11,6 +11,7 @@ void add_coarsen_command(const Command& program, Session& session);
 void add_combine_command(const Command& program, Session& session);
 void add_diff_command(const Command& program, Session& session);
 void add_components_command(const Command& program, Session& session);
+void add_materials_command(const Command& program, Session& session);
 void add_edit_command(const Command& program, Session& session);
 /// Adds crop, shift, mirror, rotate, dilate, erode and fill.
 void add_edit_commands(const Command& program, Session& session);

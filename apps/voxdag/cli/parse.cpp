@@ -92,6 +92,18 @@ std::vector<double> parse_numbers(const std::string& text) {
   }
 }
 
+std::vector<std::string> parse_words(const std::string& text) {
+  std::vector<std::string> words(1);
+  for (const char c : text)
+    if (c == ',')
+      words.emplace_back();
+    else
+      words.back() += c;
+  std::erase(words, "");
+  if (words.empty()) throw std::invalid_argument("must be words between commas");
+  return words;
+}
+
 Vec3d parse_vec3(const std::string& text) {
   const auto v = parse_list<double, 3>(text);
   return {v[0], v[1], v[2]};

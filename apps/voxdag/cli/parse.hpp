@@ -22,6 +22,8 @@ std::optional<std::int64_t> read_whole_number(std::string_view text);
 
 /// Parses a list of at least one number: "1,2.5".
 std::vector<double> parse_numbers(const std::string& text);
+/// Parses a list of at least one word: "ground,7".
+std::vector<std::string> parse_words(const std::string& text);
 /// Parses three numbers: "1.5,-2,0".
 Vec3d parse_vec3(const std::string& text);
 /// Parses three numbers, not all zero.

@@ -40,6 +40,15 @@ struct MetadataField {
     if (!value.is_number_unsigned()) fail("not a whole number of 0 or more");
     return value.get<std::uint64_t>();
   }
+  /// From -2^53 to 2^53.
+  std::int64_t integer() const {
+    constexpr std::int64_t kMost = std::int64_t{1} << 53;
+    if (!value.is_number_integer()) fail("not a whole number");
+    if (value.get<double>() < -0x1p53 || value.get<double>() > 0x1p53 ||
+        std::abs(value.get<std::int64_t>()) > kMost)
+      fail("not from -2^53 to 2^53");
+    return value.get<std::int64_t>();
+  }
   double finite() const {
     if (!value.is_number() || !std::isfinite(value.get<double>())) fail("not a finite number");
     return value.get<double>();

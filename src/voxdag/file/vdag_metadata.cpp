@@ -1,9 +1,12 @@
 #include "voxdag/file/vdag_metadata.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "voxdag/file/metadata_json.hpp"
 
@@ -22,6 +25,7 @@ MetadataJson attributes_json(const AttributesMetadata& attributes) {
   if (attributes.colors) json["color"] = values_json(*attributes.colors);
   if (attributes.normals) json["normal"] = values_json(*attributes.normals);
   if (attributes.materials) json["material"] = {{"names", *attributes.materials}};
+  if (!attributes.labels.empty()) json["material"]["labels"] = attributes.labels;
   return json;
 }
 
@@ -46,6 +50,12 @@ AttributesMetadata read_attributes(const MetadataField& field, const Grid& grid)
     attributes.materials.emplace();
     for (std::size_t i = 0; i < names.value.size(); ++i)
       attributes.materials->push_back(names.at(i).text());
+    if (field.at("material").value.contains("labels")) {
+      const MetadataField labels = field.at("material").at("labels");
+      labels.expect_array(names.value.size());
+      for (std::size_t i = 0; i < names.value.size(); ++i)
+        attributes.labels.push_back(labels.at(i).integer());
+    }
   }
   return attributes;
 }
@@ -63,6 +73,25 @@ double AttributesMetadata::normal_mean_degrees(std::uint64_t cells) const {
   const double distance =
       static_cast<double>(normals->errors.value_or(0)) / 256 / static_cast<double>(cells);
   return distance / 127 * 180 / std::numbers::pi;
+}
+
+std::optional<std::size_t> find_material(const AttributesMetadata& attributes,
+                                         std::string_view wanted) {
+  if (!attributes.materials) return std::nullopt;
+  const auto place_of = [](const auto& list, const auto& value) -> std::optional<std::size_t> {
+    const auto at = std::find(list.begin(), list.end(), value);
+    if (at == list.end()) return std::nullopt;
+    return static_cast<std::size_t>(at - list.begin());
+  };
+  if (const auto id = place_of(*attributes.materials, wanted)) return id;
+  std::int64_t number = 0;
+  const char* const end = wanted.data() + wanted.size();
+  const auto [read, error] = std::from_chars(wanted.data(), end, number);
+  if (error != std::errc{} || read != end) return std::nullopt;
+  if (!attributes.labels.empty()) return place_of(attributes.labels, number);
+  if (number < 0 || std::cmp_greater_equal(number, attributes.materials->size()))
+    return std::nullopt;
+  return static_cast<std::size_t>(number);
 }
 
 std::string vdag_metadata_json(const VdagMetadata& metadata) {

@@ -26,6 +26,9 @@ struct AttributesMetadata {
   std::optional<Values> colors, normals;
   /// The names of the materials, by id.
   std::optional<std::vector<std::string>> materials;
+  /// The labels for which the materials stand, by id (`import --labels`); empty: they stand for
+  /// none. From -2^53 to 2^53.
+  std::vector<std::int64_t> labels;
 
   /// Returns m, the finest level with attributes; there must be some.
   int level() const { return std::countr_zero(static_cast<std::uint64_t>(resolution)); }
@@ -44,6 +47,11 @@ struct VdagMetadata : SceneMetadata {
   AttributesMetadata attributes;
   friend bool operator==(const VdagMetadata&, const VdagMetadata&) = default;
 };
+
+/// Returns the id of the material that has a name, or a label written as a number, or without
+/// labels the id itself; nothing if there is none.
+std::optional<std::size_t> find_material(const AttributesMetadata& attributes,
+                                         std::string_view wanted);
 
 /// Returns the JSON text: keys in a fixed order, every double in the shortest form that reads back
 /// as the same value. Bytes of strings that are not UTF-8 become U+FFFD.

@@ -144,6 +144,28 @@ TEST_F(LasPointsTest, WithheldPointsAreSkipped) {
   EXPECT_EQ(read(las_of(las)), cloud_of(las));
 }
 
+TEST_F(LasPointsTest, LabelsAreTheClassification) {
+  for (const auto& [minor, format] : {std::pair{0, 1}, {2, 3}, {4, 7}}) {
+    LasFile las = random_las(minor, format, 4, 3);
+    las.flags = {2, 5, 0x25, 31};
+    std::string bytes = las_of(las);
+    const std::size_t first = header_bytes(minor) + las.skipped;
+    // Format 7 has its classes in byte 16; byte 15 has flags.
+    if (format == 7)
+      for (std::size_t i = 0; i < 4; ++i) {
+        bytes[first + i * kRecordBytes[7] + 16] = static_cast<char>(i == 3 ? 200 : las.flags[i]);
+        bytes[first + i * kRecordBytes[7] + 15] = 0;
+      }
+    const LabelledPoints points = read_labels(bytes, "");
+    // The upper three bits are flags in formats 0 to 5, but in version 1.0.
+    const Label third = format == 3 ? 5 : 0x25;
+    EXPECT_EQ(points.labels, (std::vector<Label>{2, 5, third, format == 7 ? 200 : 31}));
+    EXPECT_EQ(points.names.at(2), "ground");
+    EXPECT_EQ(points.names.size(), format == 7 ? 23u : 13u);
+    EXPECT_EQ(read_labels(bytes, "point_source_id").labels, std::vector<Label>(4, 0x7777));
+  }
+}
+
 TEST_F(LasPointsTest, TheLegacyCountWinsWithAWarning) {
   const LasFile las = random_las(4, 1, 3, 5);
   const std::string good = las_of(las);

@@ -232,6 +232,25 @@ TEST_F(Nrrd, OtherHeadersAreRefused) {
   EXPECT_TRUE(has(error_of_bytes("v.nrrd", "P5 1 1"), "does not begin with \"NRRD\""));
 }
 
+TEST_F(Nrrd, LabelsHaveTheNamesOfSegments) {
+  write("v.seg.nrrd",
+        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 1\nencoding: raw\n"
+        "Segment0_LabelValue:=2\nSegment0_Name:=liver\nSegment1_Name:=left kidney\n"
+        "Segment1_LabelValue:=9\nSegment2_Name:=nameless\n\n" +
+            std::string("\2\0\11\3", 4));
+  const auto source = open_voxel_source(path("v.seg.nrrd"), {.labels = ""});
+  ImportOptions options;
+  options.folder = dir_.path();
+  const ImportResult result = import_voxels(*source, options);
+  EXPECT_EQ(result.labels, (std::vector<Label>{2, 3, 9}));
+  EXPECT_EQ(result.label_names, (std::vector<std::string>{"liver", "3", "left kidney"}));
+  write("l.nrrd",
+        "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 2 1\nkinds: list domain domain "
+        "domain\nencoding: raw\n\n12345678");
+  EXPECT_TRUE(has(error_of([&] { open_voxel_source(path("l.nrrd"), {.labels = ""}); }),
+                  "labels need one value"));
+}
+
 TEST_F(Nrrd, EveryTruncatedOrDamagedFileIsRefusedOrSafe) {
   const RandomVolume<std::uint16_t> volume({3, 2, 4}, 5);
   const std::string header =

@@ -69,6 +69,19 @@ class PointFile : public testing::Test {
     });
     return cloud;
   }
+  struct LabelledPoints {
+    std::vector<Label> labels;
+    std::map<Label, std::string> names;
+  };
+  LabelledPoints read_labels(const std::string& bytes, const std::string& field) const {
+    write_text(path_, bytes);
+    const auto source = open_voxel_source(path_, {.labels = field});
+    LabelledPoints points{{}, source->label_names()};
+    source->visit_all([&](const VoxelBatch& batch) {
+      points.labels.insert(points.labels.end(), batch.labels.begin(), batch.labels.end());
+    });
+    return points;
+  }
   std::string error(const std::string& bytes) const {
     return error_of([&] { read(bytes); });
   }

@@ -225,6 +225,22 @@ TEST_F(SchematicFile, AnExportComesBack) {
   EXPECT_EQ(read_back(path("part.schem"), kWindow.lo), expected);
 }
 
+TEST_F(SchematicFile, LabelsAreTheNamesOfBlocks) {
+  const TestBlocks blocks({7, 3, 5}, 20, 1);
+  write("s.schem", sponge(blocks, 20, 2));
+  const auto source = open_voxel_source(path("s.schem"), {.labels = ""});
+  const std::map<Label, std::string> names = source->label_names();
+  std::vector<std::string> found, expected;
+  source->visit_all([&](const VoxelBatch& batch) {
+    for (const Label label : batch.labels) found.push_back(names.at(label));
+  });
+  for (const auto& [voxel, number] : blocks.voxels()) {
+    const std::string name = block_name(number);
+    expected.push_back(name.substr(0, name.find('[')));
+  }
+  EXPECT_EQ(found, expected);
+}
+
 TEST_F(SchematicFile, DamageIsFound) {
   const TestBlocks blocks({3, 2, 2}, 3, 5);
   const std::string good = sponge(blocks, 3, 2);

@@ -84,7 +84,12 @@ DagModel edited(std::span<const PlacedModel> models, Svdag dag, const Grid& grid
       join_bound(joined.normals, of.normals->bound, values.bounds.normal_bound_degrees, 180);
     if (!of.materials) continue;
     if (!joined.materials) joined.materials.emplace();
+    const std::size_t before = joined.materials->size();
+    const bool have_labels = !of.labels.empty() && joined.labels.size() == before;
     layer.material_ids = merge_names(*joined.materials, *of.materials);
+    joined.labels.resize(have_labels ? joined.materials->size() : 0);
+    for (std::size_t i = 0; have_labels && i < of.labels.size(); ++i)
+      if (layer.material_ids[i] >= before) joined.labels[layer.material_ids[i]] = of.labels[i];
   }
   check_given(values.new_values, joined);
   DagAttributes attributes =

@@ -20,11 +20,14 @@ class BatchedVoxels {
   }
   /// Notes the splat of the place that is added next. A source gives all its places one, or none.
   void add_splat(const Splat& splat) { splats_.push_back(splat); }
+  /// Notes the label of the place that is added next. A source gives all its places one, or none.
+  void add_label(Label label) { labels_.push_back(label); }
   void finish() {
-    if (!places_.empty()) visit_({places_, colors_, splats_});
+    if (!places_.empty()) visit_({places_, colors_, splats_, labels_});
     places_.clear();
     colors_.clear();
     splats_.clear();
+    labels_.clear();
   }
 
  private:
@@ -34,6 +37,7 @@ class BatchedVoxels {
   std::vector<Vec3d> places_;
   std::vector<Rgb8> colors_;
   std::vector<Splat> splats_;
+  std::vector<Label> labels_;
 };
 
 }  // namespace voxdag

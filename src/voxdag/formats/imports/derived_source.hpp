@@ -16,6 +16,8 @@ class DerivedSource : public VoxelSource {
   bool has_points() const override { return source_->has_points(); }
   bool has_colors() const override { return source_->has_colors(); }
   bool has_splats() const override { return source_->has_splats(); }
+  bool has_labels() const override { return source_->has_labels(); }
+  std::map<Label, std::string> label_names() const override { return source_->label_names(); }
   CoordinateError coordinate_error() const override { return source_->coordinate_error(); }
   bool has_palette() const override { return source_->has_palette(); }
   std::optional<Grid> grid() const override { return source_->grid(); }
@@ -33,7 +35,7 @@ class DerivedSource : public VoxelSource {
     source_->visit_all([&](const VoxelBatch& batch) {
       places.clear();
       for (const Vec3d place : batch.places) places.push_back(place_of(place));
-      visit({places, batch.colors});
+      visit({places, batch.colors, {}, batch.labels});
     });
   }
 

@@ -12,6 +12,8 @@ void check_grid_options(const VoxelSource& source, const ImportOptions& options)
   if (!source.has_splats() && (splats.opacity || splats.min_scale || splats.max_scale))
     throw Error("", "",
                 "is not read as splats: --opacity, --min-scale and --max-scale are for those");
+  if (!options.labels.empty() && !source.has_labels())
+    throw Error("", "", "is read without labels: --keep and --drop need --labels");
   const bool sets_place = options.voxel_size || options.origin;
   if (source.has_points()) {
     if (!options.resolution && !options.voxel_size && !source.grid())
@@ -52,8 +54,17 @@ ImportedModel import_model(const VoxelSource& source, const ImportOptions& optio
     metadata.attributes.colors = {color_bound_of(source, options),
                                   result.attributes.color_errors.squared};
   }
+  if (result.attributes.view().has_materials()) {
+    metadata.attributes.resolution = result.grid.resolution();
+    metadata.attributes.materials = std::move(result.label_names);
+    metadata.attributes.labels = std::move(result.labels);
+  }
   return {DagModel(std::move(result.dag), std::move(result.attributes), std::move(metadata), work),
-          result.read, result.outside, result.not_finite, result.too_large};
+          result.read,
+          result.outside,
+          result.unwanted,
+          result.not_finite,
+          result.too_large};
 }
 
 }  // namespace voxdag

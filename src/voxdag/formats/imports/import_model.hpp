@@ -13,6 +13,7 @@ struct ImportedModel {
   DagModel model;
   std::uint64_t read = 0;        ///< Points or voxels in the source.
   std::uint64_t outside = 0;     ///< Points outside of the bounds, which are left out.
+  std::uint64_t unwanted = 0;    ///< Those that ImportOptions::labels leaves out.
   std::uint64_t not_finite = 0;  ///< Points that are not finite, which are left out.
   std::uint64_t too_large = 0;   ///< Splats that are too large, which are left out.
 };

@@ -11,7 +11,10 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
+#include "voxdag/formats/imports/labels/cell_labels.hpp"
+#include "voxdag/formats/imports/labels/label_names.hpp"
 #include "voxdag/formats/imports/splats/import_splats.hpp"
+#include "voxdag/stored/attributes/build_cell_index.hpp"
 
 namespace voxdag {
 namespace {
@@ -130,6 +133,7 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
     if (!options.bounds && !options.origin && !options.snap) return locator.voxel_in_box(place);
     return locator.voxel(place);
   };
+  const LabelFilter filter(source, options);
   // Calls add(voxel, index) for all places in the grid.
   const auto each_voxel = [&](const VoxelBatch& batch, const auto& add) {
     work.poll();
@@ -138,29 +142,52 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
       const Vec3d place = batch.places[i];
       if (!is_finite(place))
         ++result.not_finite;
+      else if (!batch.labels.empty() && !filter.keeps(batch.labels[i]))
+        ++result.unwanted;
       else if (const std::optional<Vec3i> voxel = voxel_of(place))
         add(*voxel, i);
       else
         ++result.outside;
     }
   };
-  if (options.colors && source.has_colors()) {
-    ColoredVoxelBuilder builder(levels, voxels_in_memory(work.memory, sizeof(ColoredCode)),
-                                options.folder, work,
-                                source.has_palette() ? ColorRule::kLast : ColorRule::kMean);
-    source.visit_all([&](const VoxelBatch& batch) {
-      each_voxel(batch, [&](Vec3i voxel, std::size_t i) { builder.add(voxel, batch.colors[i]); });
+  const bool has_colors = options.colors && source.has_colors(), has_labels = source.has_labels();
+  const ColorRule rule = source.has_palette() ? ColorRule::kLast : ColorRule::kMean;
+  const auto most = [&](std::size_t bytes) {
+    return voxels_in_memory(work.memory, bytes) / (has_colors && has_labels ? 2 : 1);
+  };
+  std::optional<ColoredVoxelBuilder> colors;
+  std::optional<LabelCollector> labels;
+  std::optional<VoxelBuilder> voxels;
+  if (has_colors) colors.emplace(levels, most(sizeof(ColoredCode)), options.folder, work, rule);
+  if (has_labels) labels.emplace(levels, most(sizeof(LabelledCode)), options.folder, work, rule);
+  if (!has_colors && !has_labels)
+    voxels.emplace(levels, most(sizeof(std::uint64_t)), options.folder, work);
+  source.visit_all([&](const VoxelBatch& batch) {
+    if (voxels) return each_voxel(batch, [&](Vec3i voxel, std::size_t) { voxels->add(voxel); });
+    each_voxel(batch, [&](Vec3i voxel, std::size_t i) {
+      if (colors) colors->add(voxel, batch.colors[i]);
+      if (labels) labels->add(voxel, batch.labels[i]);
     });
-    auto [dag, attributes] = builder.finish(color_bound_of(source, options));
+  });
+  if (voxels) {
+    result.dag = voxels->finish();
+  } else if (colors) {
+    auto [dag, attributes] = colors->finish(color_bound_of(source, options));
+    colors.reset();
     result.dag = std::move(dag);
     result.attributes = std::move(attributes);
   } else {
-    VoxelBuilder builder(levels, voxels_in_memory(work.memory, sizeof(std::uint64_t)),
-                         options.folder, work);
-    source.visit_all([&](const VoxelBatch& batch) {
-      each_voxel(batch, [&](Vec3i voxel, std::size_t) { builder.add(voxel); });
-    });
-    result.dag = builder.finish();
+    result.dag = labels->make_dag();
+  }
+  if (labels) {
+    const MemoryReservation bytes(work.memory,
+                                  result.dag.view().bytes() + result.attributes.bytes());
+    if (!has_colors && !result.dag.view().is_empty())
+      result.attributes.index = build_cell_index(result.dag.view(), levels, work.memory);
+    LabelIds found = labels->encode();
+    result.attributes.materials = std::move(found.ids);
+    result.label_names = names_of_labels(found.labels, source.label_names());
+    result.labels = std::move(found.labels);
   }
   return result;
 }

@@ -29,6 +29,10 @@ struct ImportOptions : GridRequest {
   bool colors = true;  ///< Stores the colours of files that have some.
   /// AttributeOptions::color_bound. Default: 0.05; 0 for sources with a palette.
   std::optional<double> color_bound;
+  /// Numbers or names of labels. Not empty: voxels and points with other labels are left out, or
+  /// with `drops`, those with these.
+  std::vector<std::string> labels;
+  bool drops_labels = false;
   std::filesystem::path folder;  ///< Of files for sorting.
   SplatOptions splats;
 };
@@ -40,10 +44,15 @@ inline double color_bound_of(const VoxelSource& source, const ImportOptions& opt
 
 struct ImportResult {
   Svdag dag;
-  DagAttributes attributes;  ///< Colours of all cells, if there are any.
+  DagAttributes attributes;  ///< Colours and labels of all cells, if there are any.
+  /// The label and the name of each material, if the source has labels: names are unique, those of
+  /// labels without a name are their numbers.
+  std::vector<Label> labels;
+  std::vector<std::string> label_names;
   Grid grid;
-  std::uint64_t read = 0;     ///< Points or voxels in the file.
-  std::uint64_t outside = 0;  ///< Points outside of the bounds, which are left out.
+  std::uint64_t read = 0;      ///< Points or voxels in the file.
+  std::uint64_t outside = 0;   ///< Points outside of the bounds, which are left out.
+  std::uint64_t unwanted = 0;  ///< Points or voxels that ImportOptions::labels leaves out.
   /// Points with NaN or infinite coordinates, and splats with such numbers or without a rotation,
   /// which are left out.
   std::uint64_t not_finite = 0;
@@ -59,8 +68,9 @@ struct ImportResult {
 /// neither: without `resolution` the grid is that of the file, or the smallest one with its corner
 /// at 0 that holds them. Reads the file once or twice; memory is bounded. Throws Error, OverMemory
 /// and Cancelled. Voxels of sources without a place lie in a grid of `voxel_size` (default 1) with
-/// its corner at `origin` (default 0). Splats set voxels by `splats`; their grid is placed around
-/// the boxes of the splats, as for a mesh.
+/// its corner at `origin` (default 0). Voxels get the
+/// labels that LabelCollector gives them. Splats set voxels by `splats`; their grid is placed
+/// around the boxes of the splats, as for a mesh.
 ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options, Work work = {});
 
 }  // namespace voxdag

@@ -143,6 +143,8 @@ class JoinedSource final : public VoxelSource {
         throw Error("", "", "is joined with others: all of them must hold points, or all voxels");
       if (source.has_splats() != has_splats())
         throw Error("", "", "is joined with others: all of them must hold splats, or none");
+      if (source.has_labels() != has_labels())
+        throw Error("", "", "is joined with others: all of them must have labels, or none");
       has_colors_ |= source.has_colors();
       if (!has_points()) add_grid(i);
     }
@@ -151,6 +153,12 @@ class JoinedSource final : public VoxelSource {
   bool has_points() const override { return sources_[0]->has_points(); }
   bool has_colors() const override { return has_colors_; }
   bool has_splats() const override { return sources_[0]->has_splats(); }
+  bool has_labels() const override { return sources_[0]->has_labels(); }
+  std::map<Label, std::string> label_names() const override {
+    std::map<Label, std::string> names;
+    for (const auto& source : sources_) names.merge(source->label_names());
+    return names;
+  }
   bool has_palette() const override {
     return std::all_of(sources_.begin(), sources_.end(),
                        [](const auto& source) { return source->has_palette(); });

@@ -24,12 +24,12 @@ struct SourceFormat {
   std::unique_ptr<VoxelSource> (*open)(const Path& path, const Options& options);
 };
 
-std::unique_ptr<VoxelSource> open_text(const Path& path, const Options&) {
-  return open_xyz_points(path);
+std::unique_ptr<VoxelSource> open_text(const Path& path, const Options& options) {
+  return open_xyz_points(path, options.labels);
 }
 
-std::unique_ptr<VoxelSource> open_blocks(const Path& path, const Options&) {
-  return open_schematic(path);
+std::unique_ptr<VoxelSource> open_blocks(const Path& path, const Options& options) {
+  return open_schematic(path, options.labels);
 }
 
 std::unique_ptr<VoxelSource> open_map(const Path& path, const Options& options) {
@@ -38,7 +38,9 @@ std::unique_ptr<VoxelSource> open_map(const Path& path, const Options& options) 
 
 constexpr SourceFormat kSourceFormats[] = {
     {".npy", true,
-     [](const Path& path, const Options& options) { return open_npy(path, options.threshold); }},
+     [](const Path& path, const Options& options) {
+       return open_npy(path, options.threshold, options.labels);
+     }},
     {".xyz", false, open_text},
     {".txt", false, open_text},
     {".csv", false, open_text},
@@ -47,28 +49,43 @@ constexpr SourceFormat kSourceFormats[] = {
     {".xyzrgb", false, open_text},
     {".ply", false,
      [](const Path& path, const Options& options) {
-       return open_ply_points(path, options.splats_are_points);
+       return open_ply_points(path, options.splats_are_points, options.labels);
      }},
     {".splat", false,
      [](const Path& path, const Options& options) {
        return open_splat_file(path, options.splats_are_points);
      }},
-    {".las", false, [](const Path& path, const Options&) { return open_las_points(path); }},
-    {".pcd", false, [](const Path& path, const Options&) { return open_pcd_points(path); }},
+    {".las", false,
+     [](const Path& path, const Options& options) {
+       return open_las_points(path, options.labels);
+     }},
+    {".pcd", false,
+     [](const Path& path, const Options& options) {
+       return open_pcd_points(path, options.labels);
+     }},
     {".binvox", false, [](const Path& path, const Options&) { return open_binvox(path); }},
     {".nrrd", true,
-     [](const Path& path, const Options& options) { return open_nrrd(path, options.threshold); }},
+     [](const Path& path, const Options& options) {
+       return open_nrrd(path, options.threshold, options.labels);
+     }},
     {".nhdr", true,
-     [](const Path& path, const Options& options) { return open_nrrd(path, options.threshold); }},
+     [](const Path& path, const Options& options) {
+       return open_nrrd(path, options.threshold, options.labels);
+     }},
     {".nii", true,
-     [](const Path& path, const Options& options) { return open_nifti(path, options.threshold); }},
+     [](const Path& path, const Options& options) {
+       return open_nifti(path, options.threshold, options.labels);
+     }},
     {".nii.gz", true,
-     [](const Path& path, const Options& options) { return open_nifti(path, options.threshold); }},
+     [](const Path& path, const Options& options) {
+       return open_nifti(path, options.threshold, options.labels);
+     }},
     {".vdb", true,
      [](const Path& path, const Options& options) {
        return open_vdb(path, options.threshold, options.grid);
      }},
-    {".vox", false, [](const Path& path, const Options&) { return open_vox(path); }},
+    {".vox", false,
+     [](const Path& path, const Options& options) { return open_vox(path, options.labels); }},
     {".schem", false, open_blocks},
     {".schematic", false, open_blocks},
     {".litematic", false, open_blocks},
@@ -144,6 +161,10 @@ bool is_voxel_source(const Path& name) {
 
 std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& options) {
   std::unique_ptr<VoxelSource> source = open_input_file(path, options);
+  if (options.labels && !source->has_labels())
+    throw Error(path.string(), "",
+                source->has_splats() ? "holds splats, which have no labels"
+                                     : "has a format of which no labels are read");
   return options.use_placement ? with_file_placement(path, std::move(source)) : std::move(source);
 }
 

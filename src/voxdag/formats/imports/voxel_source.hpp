@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -26,6 +27,9 @@ inline std::uint8_t color_byte(double component) {
   return static_cast<std::uint8_t>(component > 0 ? std::min(component, 1.0) * 255 + 0.5 : 0);
 }
 
+/// The number of what a place belongs to: a class, an object, an organ, a material. At most 2^53.
+using Label = std::int64_t;
+
 /// Some of the points or voxels of a source.
 struct VoxelBatch {
   /// Points in world units, which may be NaN or infinite, or voxels as whole numbers.
@@ -33,6 +37,8 @@ struct VoxelBatch {
   std::span<const Rgb8> colors;  ///< One for each place; empty if the source has no colours.
   /// One for each place, its centre; empty if the source has no splats.
   std::span<const Splat> splats = {};
+  /// One for each place; empty if the source has no labels.
+  std::span<const Label> labels = {};
 };
 using VisitBatch = std::function<void(const VoxelBatch&)>;
 
@@ -46,6 +52,11 @@ class VoxelSource {
   virtual bool has_colors() const { return false; }
   /// Returns whether the points are Gaussian splats.
   virtual bool has_splats() const { return false; }
+  /// Returns whether the places have labels: numbers of what they belong to. Only sources that were
+  /// opened with VoxelSourceOptions::labels have them.
+  virtual bool has_labels() const { return false; }
+  /// Returns the names that the file or its format gives to labels, also to those without places.
+  virtual std::map<Label, std::string> label_names() const { return {}; }
   /// Returns how exact the coordinates of points are.
   virtual CoordinateError coordinate_error() const { return {}; }
   /// Returns whether the colours come from an artist's palette. The import keeps these without
@@ -67,15 +78,21 @@ class VoxelSource {
   virtual void visit_all(const VisitBatch& visit) const = 0;
 };
 
+/// Which labels to read: none, or for points those of the field with this name. An empty name
+/// stands for the field that usually has them (label_value.hpp). Volumes have their values as
+/// labels.
+using LabelRequest = std::optional<std::string>;
+
 struct VoxelSourceOptions {
   /// For volumes of numbers: values that are at least this set their voxel. Without it, all values
   /// other than 0 do.
-  std::optional<double> threshold;
+  std::optional<double> threshold = {};
   bool use_placement = true;  ///< Reads the placement that voxdag export wrote beside the file.
   std::string format = {};    ///< The ending that tells the format, "xyz"; empty: that of the name.
   std::string grid = {};  ///< For .vdb files: the name of the grid to read; empty: see open_vdb().
   bool splats_are_points = false;  ///< Reads Gaussian splats as points: their centres.
-  Work work = {};                  ///< Its budget counts what is unpacked.
+  LabelRequest labels = {};
+  Work work = {};  ///< Its budget counts what is unpacked.
 };
 
 /// Returns whether open_voxel_source() knows the end of the name. Files that end in .ply hold
@@ -84,7 +101,8 @@ bool is_voxel_source(const std::filesystem::path& name);
 
 /// Opens a file by the end of its name, or a folder of PNG files. Files that gzip or Zstandard have
 /// compressed and pipes are unpacked first (InputFile). Throws Error for formats that are
-/// not known, and for options that the format does not have.
+/// not known, for options that the format does not have, and for labels that the file does not
+/// have.
 std::unique_ptr<VoxelSource> open_voxel_source(const std::filesystem::path& path,
                                                const VoxelSourceOptions& options = {});
 

@@ -7,6 +7,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/load_value.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
@@ -133,18 +134,63 @@ int las_color_offset(int format) {
   return offsets[format];
 }
 
+/// The classes of the specification. Formats 0 to 5 have the first 13.
+constexpr std::string_view kClasses[] = {"never classified",
+                                         "unclassified",
+                                         "ground",
+                                         "low vegetation",
+                                         "medium vegetation",
+                                         "high vegetation",
+                                         "building",
+                                         "low point",
+                                         "model key point",
+                                         "water",
+                                         "rail",
+                                         "road surface",
+                                         "overlap",
+                                         "wire guard",
+                                         "wire conductor",
+                                         "transmission tower",
+                                         "wire connector",
+                                         "bridge deck",
+                                         "high noise",
+                                         "overhead structure",
+                                         "ignored ground",
+                                         "snow",
+                                         "temporal exclusion"};
+
+/// A field of a record with labels: its name, and its offsets in formats 0 to 5 and from 6 on.
+struct LasLabelField {
+  std::string_view name;
+  int offset, long_offset, bytes;
+};
+constexpr LasLabelField kLabelFieldsOfLas[] = {
+    {"classification", 15, 16, 1}, {"user_data", 17, 17, 1}, {"point_source_id", 18, 20, 2}};
+
 class LasPoints : public VoxelSource {
  public:
-  explicit LasPoints(const std::filesystem::path& path)
+  LasPoints(const std::filesystem::path& path, const LabelRequest& labels)
       : name_(path.string()),
         file_(path, MappedFile::Access::kSequential),
         header_(parse_las_header(file_.text(), name_)),
         color_(las_color_offset(header_.format)) {
     if (color_ > 0) color_shift_ = has_wide_color() ? 8 : 0;
+    if (labels)
+      label_ = &kLabelFieldsOfLas[find_label_field(
+          *labels, std::size(kLabelFieldsOfLas),
+          [](std::size_t i) { return kLabelFieldsOfLas[i].name; })];
   }
 
   bool has_points() const override { return true; }
   bool has_colors() const override { return color_ > 0; }
+  bool has_labels() const override { return label_ != nullptr; }
+  std::map<Label, std::string> label_names() const override {
+    std::map<Label, std::string> names;
+    if (label_ == &kLabelFieldsOfLas[0])
+      for (std::size_t i = 0; i < (header_.format < 6 ? 13 : std::size(kClasses)); ++i)
+        names.emplace(static_cast<Label>(i), kClasses[i]);
+    return names;
+  }
   /// Counts the rounding of add(): a product and a sum.
   CoordinateError coordinate_error() const override {
     CoordinateError error{0x1p-51, {}};
@@ -186,6 +232,16 @@ class LasPoints : public VoxelSource {
     return header_.minor_version > 0 && (flags & 128) != 0;
   }
 
+  Label label_in(const char* record) const {
+    const bool is_long = header_.format >= 6;
+    const char* const at = record + (is_long ? label_->long_offset : label_->offset);
+    if (label_->bytes == 2) return load_value<std::uint16_t>(at);
+    const auto value = load_value<std::uint8_t>(at);
+    // In formats 0 to 5, bits 5 to 7 are flags; in version 1.0 they were not.
+    const bool has_flags = label_ == &kLabelFieldsOfLas[0] && !is_long && header_.minor_version > 0;
+    return has_flags ? value & 31 : value;
+  }
+
   /// Returns whether a component of a colour needs more than 8 bits.
   bool has_wide_color() const {
     bool is_wide = false;
@@ -202,6 +258,7 @@ class LasPoints : public VoxelSource {
     for (int axis = 0; axis < 3; ++axis)
       point[axis] =
           load_value<std::int32_t>(record + 4 * axis) * header_.scale[axis] + header_.offset[axis];
+    if (has_labels()) points.add_label(label_in(record));
     if (!has_colors()) return points.add(point);
     Rgb8 color;
     for (std::size_t c = 0; c < 3; ++c)
@@ -215,12 +272,14 @@ class LasPoints : public VoxelSource {
   LasHeader header_;
   int color_;  ///< Offset in a record; 0: none.
   int color_shift_ = 0;
+  const LasLabelField* label_ = nullptr;
 };
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> open_las_points(const std::filesystem::path& path) {
-  return std::make_unique<LasPoints>(path);
+std::unique_ptr<VoxelSource> open_las_points(const std::filesystem::path& path,
+                                             const LabelRequest& labels) {
+  return std::make_unique<LasPoints>(path, labels);
 }
 
 }  // namespace voxdag

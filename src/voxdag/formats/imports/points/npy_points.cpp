@@ -10,6 +10,7 @@
 #include "voxdag/core/printable.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/npy_type.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
@@ -131,9 +132,9 @@ std::vector<Column> find_columns(const std::vector<Field>& fields,
 
 class NpyPoints : public VoxelSource {
  public:
-  NpyPoints(const std::filesystem::path& path, const NpyStart& start)
+  NpyPoints(const std::filesystem::path& path, const NpyStart& start, const LabelRequest& labels)
       : name_(path.string()), file_(path, MappedFile::Access::kSequential), begin_(start.data) {
-    find_rows(start.header);
+    find_rows(start.header, labels);
     is_real_ = std::any_of(places_.begin(), places_.end(),
                            [](const Column& column) { return is_real(column.type.value); });
     if (!colors_.empty()) find_color_scale();
@@ -148,6 +149,7 @@ class NpyPoints : public VoxelSource {
 
   bool has_points() const override { return is_real_; }
   bool has_colors() const override { return !colors_.empty(); }
+  bool has_labels() const override { return label_.has_value(); }
   std::vector<std::string> warnings() const override { return warnings_; }
   CoordinateError coordinate_error() const override {
     CoordinateError error;
@@ -164,6 +166,7 @@ class NpyPoints : public VoxelSource {
     PassedPages pages(file_, row);
     for (std::uint64_t i = 0; i < rows_; ++i, row += row_step_) {
       const Vec3d place{places_[0].load(row), places_[1].load(row), places_[2].load(row)};
+      if (label_) voxels.add_label(label_of(label_->load(row)));
       if (colors_.empty())
         voxels.add(place);
       else
@@ -182,11 +185,11 @@ class NpyPoints : public VoxelSource {
             found);
   }
 
-  void find_rows(const NpyHeader& header) {
+  void find_rows(const NpyHeader& header, const LabelRequest& labels) {
     if (header.shape.empty()) refuse("a single number");
     rows_ = header.shape[0];
     if (header.dtype.starts_with('[')) {
-      find_fields(header);
+      find_fields(header, labels);
     } else {
       const std::optional<NpyType> type = parse_npy_type(header.dtype);
       if (!type || header.dtype.ends_with("b1")) refuse("of type " + in_quotes(header.dtype));
@@ -200,6 +203,7 @@ class NpyPoints : public VoxelSource {
       is_by_columns_ = header.fortran_order;
       row_bytes_ = 3 * item;
       row_step_ = is_by_columns_ ? item : row_bytes_;
+      if (labels) throw Error(name_, "header", "has rows without fields, so without labels");
       if (rows_ > kMaxRows) refuse("of " + std::to_string(rows_) + " rows");
       for (std::uint64_t axis = 0; axis < 3; ++axis)
         places_.push_back({*type, axis * item * (is_by_columns_ ? rows_ : 1)});
@@ -207,7 +211,7 @@ class NpyPoints : public VoxelSource {
     if (rows_ > kMaxRows) refuse("of " + std::to_string(rows_) + " rows");
   }
 
-  void find_fields(const NpyHeader& header) {
+  void find_fields(const NpyHeader& header, const LabelRequest& labels) {
     if (header.shape.size() != 1) refuse("a structured array of more than one axis");
     const auto fields = FieldParser(header.dtype).parse(row_bytes_);
     if (!fields) refuse("of type " + in_quotes(header.dtype));
@@ -217,6 +221,11 @@ class NpyPoints : public VoxelSource {
     if (places_.empty()) refuse("of type " + in_quotes(header.dtype));
     colors_ = find_columns(*fields, {"color", "colors", "rgb", "rgba"},
                            {{"red", "green", "blue"}, {"r", "g", "b"}});
+    if (!labels) return;
+    const Field& field = (*fields)[find_label_field(
+        *labels, fields->size(), [&](std::size_t i) { return (*fields)[i].name; })];
+    if (field.items != 1) throw Error(name_, "header", "the labels are not one number in each row");
+    label_ = Column{field.type, field.offset};
   }
 
   /// Finds the range of the colours: 255 of bytes, 65535 of 16 bits, 1 of real numbers.
@@ -248,15 +257,16 @@ class NpyPoints : public VoxelSource {
   bool is_by_columns_ = false;  ///< The order is Fortran's.
   bool is_real_ = false;
   std::vector<Column> places_, colors_;  ///< Three, or no colours.
-  double color_scale_ = 1.0 / 255;       ///< Maps a component to 0..1.
+  std::optional<Column> label_;
+  double color_scale_ = 1.0 / 255;  ///< Maps a component to 0..1.
   std::vector<std::string> warnings_;
 };
 
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_npy_points(const std::filesystem::path& path,
-                                             const NpyStart& start) {
-  return std::make_unique<NpyPoints>(path, start);
+                                             const NpyStart& start, const LabelRequest& labels) {
+  return std::make_unique<NpyPoints>(path, start, labels);
 }
 
 }  // namespace voxdag

@@ -5,6 +5,7 @@
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/load_value.hpp"
 #include "voxdag/formats/imports/points/lzf_stream.hpp"
@@ -56,11 +57,12 @@ struct PcdPoint {
   Vec3d place;
   std::uint32_t color = 0;  ///< 0xAARRGGBB, of a field rgb or rgba.
   Vec3d channels;           ///< Of the fields r, g and b.
+  double label = 0;
 };
 
 class PcdPoints : public VoxelSource {
  public:
-  explicit PcdPoints(const std::filesystem::path& path)
+  PcdPoints(const std::filesystem::path& path, const LabelRequest& labels)
       : file_(path, MappedFile::Access::kSequential),
         source_{file_.text(), path.string(), {}, &file_, {}},
         header_(parse_pcd_header(source_.bytes, source_.name)) {
@@ -80,10 +82,18 @@ class PcdPoints : public VoxelSource {
     }
     if (header_.data == PcdData::kCompressed && header_.points > 0) find_compressed();
     if (used_.size() == 3) find_channels();
+    if (!labels) return;
+    const std::size_t found = find_label_field(
+        *labels, header_.fields.size(), [&](std::size_t i) { return header_.fields[i].name; });
+    if (header_.fields[found].count != 1)
+      throw fail_in_header("the field of labels has more than one value");
+    used_.push_back(header_.fields[found]);
+    has_labels_ = true;
   }
 
   bool has_points() const override { return true; }
-  bool has_colors() const override { return used_.size() > 3; }
+  bool has_colors() const override { return color_fields() > 0; }
+  bool has_labels() const override { return has_labels_; }
   CoordinateError coordinate_error() const override {
     const bool has_floats = std::any_of(used_.begin(), used_.begin() + 3, [](const PcdField& f) {
       return f.type == 'F' && f.size == 4;
@@ -97,6 +107,9 @@ class PcdPoints : public VoxelSource {
   }
 
  private:
+  std::size_t color_fields() const { return used_.size() - (has_labels_ ? 4 : 3); }
+  bool is_label(std::size_t used) const { return has_labels_ && used + 1 == used_.size(); }
+
   Error fail_in_header(const std::string& reason) const { return {source_.name, "header", reason}; }
 
   /// Finds colours in fields r, g and b: of bytes, 16 bits, or real numbers to 1 or 255.
@@ -132,8 +145,9 @@ class PcdPoints : public VoxelSource {
   }
 
   void add(BatchedVoxels& points, const PcdPoint& point) const {
+    if (has_labels_) points.add_label(label_of(point.label));
     if (!has_colors()) return points.add(point.place);
-    if (used_.size() > 4) {
+    if (color_fields() > 1) {
       const Vec3d channels = point.channels * (1 / color_range_);
       return points.add(point.place,
                         {color_byte(channels.x), color_byte(channels.y), color_byte(channels.z)});
@@ -147,7 +161,9 @@ class PcdPoints : public VoxelSource {
   void load_field(std::size_t used, const char* at, PcdPoint& point) const {
     if (used < 3)
       point.place[static_cast<int>(used)] = load_number(used_[used], at);
-    else if (used_.size() > 4)
+    else if (is_label(used))
+      point.label = load_number(used_[used], at);
+    else if (color_fields() > 1)
       point.channels[static_cast<int>(used) - 3] = load_number(used_[used], at);
     else
       point.color = load_value<std::uint32_t>(at);
@@ -178,13 +194,19 @@ class PcdPoints : public VoxelSource {
                                      std::to_string(header_.point_values) + " values"};
       for (std::size_t used = 0; used < used_.size(); ++used) {
         if (used_[used].ordinal != value) continue;
-        const bool is_channel = used >= 3;
-        if (is_channel && used_.size() == 4)
+        const bool is_channel = used >= 3 && !is_label(used);
+        if (is_channel && color_fields() == 1) {
           point.color = parse_color(token);
-        else if (!parse_float(token, is_channel ? point.channels[static_cast<int>(used) - 3]
-                                                : point.place[static_cast<int>(used)]))
-          throw Fault{token.data(), (is_channel ? "colour " : "coordinate ") + in_quotes(token) +
-                                        " is not a number"};
+          continue;
+        }
+        double& number = is_label(used) ? point.label
+                         : is_channel   ? point.channels[static_cast<int>(used) - 3]
+                                        : point.place[static_cast<int>(used)];
+        if (!parse_float(token, number))
+          throw Fault{token.data(), (is_label(used) ? "label "
+                                     : is_channel   ? "colour "
+                                                    : "coordinate ") +
+                                        in_quotes(token) + " is not a number"};
       }
     }
     const std::string_view extra = next_token(line);
@@ -274,7 +296,9 @@ class PcdPoints : public VoxelSource {
   MappedFile file_;
   MeshSource source_;
   PcdHeader header_;
-  std::vector<PcdField> used_;   ///< x, y, z, and perhaps a packed colour, or r, g and b.
+  /// x, y, z, and perhaps a packed colour, or r, g and b, and the label.
+  std::vector<PcdField> used_;
+  bool has_labels_ = false;
   double color_range_ = 1;       ///< The greatest component of r, g and b.
   std::string_view compressed_;  ///< None if no point is compressed.
   bool is_stored_ = false;       ///< The data of a compressed file are as they were.
@@ -282,8 +306,9 @@ class PcdPoints : public VoxelSource {
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> open_pcd_points(const std::filesystem::path& path) {
-  return std::make_unique<PcdPoints>(path);
+std::unique_ptr<VoxelSource> open_pcd_points(const std::filesystem::path& path,
+                                             const LabelRequest& labels) {
+  return std::make_unique<PcdPoints>(path, labels);
 }
 
 }  // namespace voxdag

@@ -4,6 +4,7 @@
 
 #include "voxdag/formats/export_placement.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/readers/ply/ply_color.hpp"
@@ -15,12 +16,12 @@ namespace voxdag {
 namespace {
 
 /// Three coordinates, then three components of a colour if the file has them, then the opacity, the
-/// scales and the rotation of a splat if the vertices are splats.
-using Values = std::array<double, 14>;
+/// scales and the rotation of a splat if the vertices are splats, then the label if one is read.
+using Values = std::array<double, 15>;
 
 class PlyPoints : public VoxelSource {
  public:
-  PlyPoints(const std::filesystem::path& path, bool splats_are_points)
+  PlyPoints(const std::filesystem::path& path, bool splats_are_points, const LabelRequest& labels)
       : file_(path, MappedFile::Access::kSequential),
         source_{file_.text(), path.string(), {}, &file_, {}},
         header_(parse_ply_header(source_, PlyUse::kPoints)) {
@@ -42,13 +43,22 @@ class PlyPoints : public VoxelSource {
           {"opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"});
       columns_.insert(columns_.end(), splat.begin(), splat.end());
     }
+    has_splats_ = columns_.size() > first_splat_column_;
+    if (labels) {
+      const auto& properties = vertex().properties;
+      const std::size_t found = find_label_field(*labels, properties.size(),
+                                                 [&](std::size_t i) { return properties[i].name; });
+      has_labels_ = true;
+      columns_.push_back(static_cast<int>(found));
+    }
     if (!is_harmonic && std::any_of(color.begin(), color.begin() + 3,
                                     [&](int p) { return !is_integer(type_of(p)); }))
       find_color_range();
   }
 
   bool has_points() const override { return true; }
-  bool has_splats() const override { return columns_.size() > first_splat_column_; }
+  bool has_splats() const override { return has_splats_; }
+  bool has_labels() const override { return has_labels_; }
   std::optional<Grid> grid() const override { return grid_; }
   std::optional<char> up() const override { return up_; }
   bool has_colors() const override { return first_splat_column_ > 3; }
@@ -130,6 +140,7 @@ class PlyPoints : public VoxelSource {
       points.add_splat(splat_of_logarithms({value(4), value(5), value(6), value(7)},
                                            {value(1), value(2), value(3)}, value(0)));
     }
+    if (has_labels_) points.add_label(label_of(values[columns_.size() - 1]));
     if (!has_colors()) return points.add(point);
     Rgb8 color;
     for (std::size_t c = 0; c < 3; ++c)
@@ -230,6 +241,7 @@ class PlyPoints : public VoxelSource {
   Orientation turn_;
   std::vector<int> columns_;  ///< The properties of the values.
   std::size_t first_splat_column_ = 3;
+  bool has_splats_ = false, has_labels_ = false;
   std::array<double, 3> color_scales_{};
   double color_offset_ = 0;
 };
@@ -237,9 +249,9 @@ class PlyPoints : public VoxelSource {
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_ply_points(const std::filesystem::path& path,
-                                             bool splats_are_points) {
+                                             bool splats_are_points, const LabelRequest& labels) {
   if (auto packed = open_packed_ply(path, splats_are_points)) return packed;
-  return std::make_unique<PlyPoints>(path, splats_are_points);
+  return std::make_unique<PlyPoints>(path, splats_are_points, labels);
 }
 
 }  // namespace voxdag

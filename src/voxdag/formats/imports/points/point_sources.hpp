@@ -13,7 +13,8 @@ inline constexpr const char* kCompressedLas =
 /// fields x, y and z, or one of three items called voxel, position or xyz. Integers are voxels,
 /// real numbers are points. The fields red, green and blue, or color, are colours.
 std::unique_ptr<VoxelSource> open_npy_points(const std::filesystem::path& path,
-                                             const NpyStart& start);
+                                             const NpyStart& start,
+                                             const LabelRequest& labels = {});
 
 /// Opens a text of points: three numbers in each line, and perhaps more. Blanks, tabs, commas,
 /// semicolons or quotes separate them; # and // begin comments. At most 1 MiB per line.
@@ -25,7 +26,8 @@ std::unique_ptr<VoxelSource> open_npy_points(const std::filesystem::path& path,
 ///
 /// Throws Error with the line: numbers that are none, commas inside numbers, colours beyond the
 /// range of the first points, and texts in UTF-16.
-std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path);
+std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path,
+                                             const LabelRequest& labels = {});
 
 /// Opens the vertices of a PLY file as points, in ascii and in both binary orders; ignores faces
 /// and other elements. Numbers of text are float64, whatever their type is called. The colours are
@@ -38,7 +40,8 @@ std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path);
 /// Throws Error with the line (in a binary body with the byte): malformed headers and values,
 /// counts that need a longer file, truncation before the end of the vertices.
 std::unique_ptr<VoxelSource> open_ply_points(const std::filesystem::path& path,
-                                             bool splats_are_points = false);
+                                             bool splats_are_points = false,
+                                             const LabelRequest& labels = {});
 
 /// Opens a compressed PLY file of PlayCanvas, whose vertices have the property packed_position;
 /// returns null for others. Ignores the spherical harmonics above the first. Throws Error: see
@@ -61,8 +64,12 @@ std::unique_ptr<VoxelSource> open_splat_file(const std::filesystem::path& path,
 /// Formats 2, 3, 5, 7, 8 and 10 have colours. They have 16 bits, but many programs store 8: if no
 /// component in the file exceeds 255, all have 8 bits; otherwise the upper 8 of 16 bits are read.
 ///
+/// Labels are the classification, with the names of the specification, or the field user_data or
+/// point_source_id.
+///
 /// Throws Error with the byte: compressed files, malformed headers, counts that need a longer file.
-std::unique_ptr<VoxelSource> open_las_points(const std::filesystem::path& path);
+std::unique_ptr<VoxelSource> open_las_points(const std::filesystem::path& path,
+                                             const LabelRequest& labels = {});
 
 /// Opens the points of a PCD file, versions 0.5 to 0.7, with DATA ascii, binary or
 /// binary_compressed. x, y and z may have any type; numbers of text are float64. Compressed
@@ -75,6 +82,7 @@ std::unique_ptr<VoxelSource> open_las_points(const std::filesystem::path& path);
 /// Memory is bounded, also for compressed files, which hold one field of all points after another.
 /// Throws Error with the line or byte: malformed headers and values, counts that need a longer
 /// file, compressed data that is damaged or that promises more than LZF can hold.
-std::unique_ptr<VoxelSource> open_pcd_points(const std::filesystem::path& path);
+std::unique_ptr<VoxelSource> open_pcd_points(const std::filesystem::path& path,
+                                             const LabelRequest& labels = {});
 
 }  // namespace voxdag

@@ -11,6 +11,7 @@
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
@@ -117,17 +118,19 @@ std::size_t value_of_name(std::string_view name) {
 
 class XyzPoints : public VoxelSource {
  public:
-  explicit XyzPoints(const std::filesystem::path& path)
+  XyzPoints(const std::filesystem::path& path, const LabelRequest& labels)
       : name_(path.string()), file_(path, MappedFile::Access::kSequential) {
     if (file_.text().starts_with("\xFF\xFE") || file_.text().starts_with("\xFE\xFF"))
       throw Error(name_, "", "is a text in UTF-16: save it in UTF-8");
     find_header();
+    if (labels) find_labels(*labels);
     if (!has_names_) find_colors();
     if (has_colors()) find_color_range();
   }
 
   bool has_points() const override { return true; }
   bool has_colors() const override { return columns_.size() > kCoordinates; }
+  bool has_labels() const override { return label_column_.has_value(); }
   std::vector<std::string> warnings() const override { return warnings_; }
   void visit_all(const VisitBatch& visit) const override {
     BatchedVoxels points(visit);
@@ -197,6 +200,25 @@ class XyzPoints : public VoxelSource {
       names = line;
     }
     use_names(fields_of(names));
+    for (const std::string_view name : fields_of(names)) names_.emplace_back(name);
+  }
+
+  /// Finds the column of the labels by its name or its number, from 1 on.
+  void find_labels(const std::string& wanted) {
+    std::int64_t number = 0;
+    if (parse_int(wanted, number) && number > static_cast<std::int64_t>(kCoordinates))
+      label_column_ = static_cast<std::size_t>(number) - 1;
+    else
+      label_column_ =
+          find_label_field(wanted, names_.size(), [&](std::size_t i) { return names_[i]; });
+  }
+
+  Label label_in(std::string_view line, std::uint64_t number) const {
+    const std::vector<std::string_view> fields = fields_of(line);
+    double value = 0;
+    if (*label_column_ >= fields.size() || !parse_number(fields[*label_column_], value))
+      fail(number, "has no label in column " + std::to_string(*label_column_ + 1));
+    return label_of(value);
   }
 
   static bool has_coordinate_names(const std::vector<std::string_view>& fields) {
@@ -337,6 +359,7 @@ class XyzPoints : public VoxelSource {
   void add(BatchedVoxels& points, std::string_view line, std::uint64_t number) const {
     const std::array<double, kValues> values = values_of(line, number);
     const Vec3d point{values[0], values[1], values[2]};
+    if (label_column_) points.add_label(label_in(line, number));
     if (!has_colors()) return points.add(point);
     Rgb8 color;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -356,13 +379,16 @@ class XyzPoints : public VoxelSource {
   bool has_names_ = false;
   std::vector<std::size_t> columns_{0, 1, 2};  ///< Of the coordinates, and perhaps of the colour.
   double color_range_ = 255;                   ///< The greatest component.
+  std::vector<std::string> names_;             ///< Of all columns, if they have names.
+  std::optional<std::size_t> label_column_;
   std::vector<std::string> warnings_;
 };
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path) {
-  return std::make_unique<XyzPoints>(path);
+std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path,
+                                             const LabelRequest& labels) {
+  return std::make_unique<XyzPoints>(path, labels);
 }
 
 }  // namespace voxdag

@@ -99,6 +99,11 @@ class DenseSource : public VoxelSource {
       throw Error(file_.path.string(), ErrorPlace::byte(file_.data.text().size()),
                   "truncated: the data begin at byte " + std::to_string(file_.begin));
     if (is_raw()) check_length();
+    if (file_.volume.has_labels && (file_.volume.channels > 1 || file_.volume.repeats > 1))
+      throw Error(file_.path.string(), "header",
+                  file_.volume.has_colors() ? "holds colours, not labels"
+                                            : "holds several layers, and labels need one value for "
+                                              "each voxel");
     if (file_.volume.channels == 4 && file_.volume.has_colors())
       with_bytes([&](const FillBytes& fill) {
         file_.volume.has_opaque_alpha = has_opaque_alpha(file_.volume, fill);
@@ -108,6 +113,8 @@ class DenseSource : public VoxelSource {
 
   bool has_points() const override { return false; }
   bool has_colors() const override { return file_.volume.has_colors(); }
+  bool has_labels() const override { return file_.volume.has_labels; }
+  std::map<Label, std::string> label_names() const override { return file_.label_names; }
   std::optional<Grid> grid() const override { return file_.map.grid(); }
   bool has_place() const override { return file_.has_place; }
   std::vector<std::string> warnings() const override { return file_.warnings; }

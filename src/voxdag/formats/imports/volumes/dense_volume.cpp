@@ -10,6 +10,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/volumes/value_test.hpp"
 
 namespace voxdag {
@@ -62,6 +63,12 @@ Vec3d place_of(const std::array<std::uint64_t, 3>& at) {
 template <class T>
 using Compared = std::conditional_t<std::is_same_v<T, Half>, float, T>;
 
+template <class T>
+Label label_in(const DenseVolume& volume, T value) {
+  if (volume.slope == 1 && volume.intercept == 0) return label_of(value);
+  return label_of(static_cast<double>(value) * volume.slope + volume.intercept);
+}
+
 template <class T, class Test>
 void visit_values(const DenseVolume& volume, const FillBytes& fill, BatchedVoxels& voxels,
                   const Test& is_set) {
@@ -70,6 +77,7 @@ void visit_values(const DenseVolume& volume, const FillBytes& fill, BatchedVoxel
       T value;
       std::memcpy(&value, bytes + sizeof value * static_cast<std::size_t>(layer), sizeof value);
       if (!is_set(static_cast<Compared<T>>(value))) continue;
+      if (volume.has_labels) voxels.add_label(label_in(volume, static_cast<Compared<T>>(value)));
       voxels.add(place_of(at));
       return;
     }

@@ -32,6 +32,7 @@ struct DenseVolume {
   /// The threshold is compared with the alpha of a colour, or with the greatest channel if the
   /// colour has no alpha.
   std::optional<double> threshold;
+  bool has_labels = false;        ///< Values of one channel are labels, too.
   bool has_opaque_alpha = false;  ///< Alpha is 255 everywhere: the greatest channel counts.
 
   bool has_colors() const { return channels > 1 && !is_list; }

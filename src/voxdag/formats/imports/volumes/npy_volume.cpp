@@ -13,9 +13,10 @@ namespace voxdag {
 namespace {
 
 std::unique_ptr<VoxelSource> open_volume(const std::filesystem::path& path, const NpyStart& start,
-                                         std::optional<double> threshold) {
+                                         std::optional<double> threshold, bool has_labels) {
   DenseVolume volume;
   volume.threshold = threshold;
+  volume.has_labels = has_labels;
   const std::optional<NpyType> type = parse_npy_type(start.header.dtype);
   if (!type)
     throw Error(
@@ -49,12 +50,12 @@ std::unique_ptr<VoxelSource> open_volume(const std::filesystem::path& path, cons
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_npy(const std::filesystem::path& path,
-                                      std::optional<double> threshold) {
+                                      std::optional<double> threshold, const LabelRequest& labels) {
   const NpyStart start = read_npy_start(path);
   const std::size_t axes = start.header.shape.size();
-  if (axes == 3 || axes == 4) return open_volume(path, start, threshold);
+  if (axes == 3 || axes == 4) return open_volume(path, start, threshold, labels.has_value());
   if (threshold) throw Error(path.string(), "", "has no values to compare with a threshold");
-  return open_npy_points(path, start);
+  return open_npy_points(path, start, labels);
 }
 
 }  // namespace voxdag

@@ -37,7 +37,8 @@ void skip_to_data(const NrrdHeader& header, DenseFile& file) {
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
-                                       std::optional<double> threshold) {
+                                       std::optional<double> threshold,
+                                       const LabelRequest& labels) {
   MappedFile mapping(path, MappedFile::Access::kSequential);
   const NrrdHeader header = parse_nrrd_header(path, mapping.text());
   std::vector<std::string> warnings;
@@ -49,11 +50,13 @@ std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
                  .map = map,
                  .has_place = header.placement.is_known,
                  .warnings = std::move(warnings),
+                 .label_names = header.label_names,
                  .path = data,
                  .data = std::move(mapping),
                  .begin = is_detached ? 0 : header.end,
                  .encoding = header.encoding};
   file.volume.threshold = threshold;
+  file.volume.has_labels = labels.has_value();
   skip_to_data(header, file);
   return make_dense_source(std::move(file));
 }

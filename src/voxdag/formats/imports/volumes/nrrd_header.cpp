@@ -98,6 +98,7 @@ class NrrdHeaderParser {
 
   NrrdHeader parse() {
     read_fields();
+    name_segments();
     parse_shape();
     parse_data();
     parse_spacing();
@@ -132,7 +133,11 @@ class NrrdHeaderParser {
   void read_field(std::string_view line, std::uint64_t number) {
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos) fail(number, "has no colon");
-    if (line.substr(colon).starts_with(":=")) return;
+    if (line.substr(colon).starts_with(":=")) {
+      pairs_.insert_or_assign(std::string(line.substr(0, colon)),
+                              std::string(trimmed(line.substr(colon + 2))));
+      return;
+    }
     std::string name = lower_case(trimmed(line.substr(0, colon)));
     constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
         {"datafile", "data file"}, {"lineskip", "line skip"}, {"byteskip", "byte skip"},
@@ -143,6 +148,17 @@ class NrrdHeaderParser {
     const auto [field, is_new] = fields_.try_emplace(name, NrrdField{value, number});
     if (!is_new && field->second.value != value)
       fail(number, "the field " + name_in_quotes(name) + " is there twice, with other values");
+  }
+
+  /// Reads the names that 3D Slicer gives to labels: Segment0_LabelValue and Segment0_Name.
+  void name_segments() {
+    constexpr std::string_view kValue = "_LabelValue";
+    for (const auto& [key, value] : pairs_) {
+      if (!key.starts_with("Segment") || !key.ends_with(kValue)) continue;
+      const auto name = pairs_.find(key.substr(0, key.size() - kValue.size()) + "_Name");
+      const auto label = number_in<Label>(value);
+      if (label && name != pairs_.end()) header_.label_names.emplace(*label, name->second);
+    }
   }
 
   const NrrdField* find(const std::string& name) const {
@@ -333,6 +349,8 @@ class NrrdHeaderParser {
   const std::filesystem::path& path_;
   std::string_view text_;
   std::map<std::string, NrrdField> fields_;
+  std::map<std::string, std::string>
+      pairs_;  ///< Keys and values, which mean what their writer says.
   NrrdHeader header_;
   std::uint64_t axes_ = 0;
   bool is_list_last_ = false;  ///< The last axis counts layers.

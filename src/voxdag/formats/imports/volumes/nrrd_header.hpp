@@ -4,6 +4,7 @@
 /// Format: "Definition of NRRD File Format" (teem.sourceforge.net/nrrd/format.html).
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,7 @@ namespace voxdag {
 struct NrrdHeader {
   DenseVolume volume;  ///< Without the threshold.
   VolumePlacement placement;
+  std::map<Label, std::string> label_names;  ///< Of the segments of 3D Slicer.
   Encoding encoding = Encoding::kRaw;
   std::uint64_t line_skip = 0;
   std::int64_t byte_skip = 0;  ///< -1: raw data are at the end of their file.

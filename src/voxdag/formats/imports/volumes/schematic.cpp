@@ -23,6 +23,7 @@ namespace {
 struct BlockLook {
   bool is_set = false;
   Rgb8 color{};
+  Label label = 0;  ///< The number of the name in Schematic::names_.
 };
 
 /// A box of blocks. x runs fastest, then z, then y.
@@ -52,8 +53,8 @@ struct BlockBox {
 
 class Schematic final : public VoxelSource {
  public:
-  explicit Schematic(const std::filesystem::path& path)
-      : path_(path), mapping_(path), nbt_(path, mapping_.text()) {
+  Schematic(const std::filesystem::path& path, bool has_labels)
+      : path_(path), mapping_(path), nbt_(path, mapping_.text()), has_labels_(has_labels) {
     read(nbt_.root());
     if (boxes_.empty()) nbt_.fail(0, "has no blocks");
     find_extent();
@@ -62,6 +63,12 @@ class Schematic final : public VoxelSource {
   bool has_points() const override { return false; }
   bool has_colors() const override { return boxes_[0].form != BlockBox::Form::kBytes; }
   bool has_palette() const override { return true; }
+  bool has_labels() const override { return has_labels_; }
+  std::map<Label, std::string> label_names() const override {
+    std::map<Label, std::string> names;
+    for (const auto& [name, label] : names_) names.emplace(label, name);
+    return names;
+  }
   std::optional<Grid> grid() const override { return grid_; }
   std::optional<char> up() const override { return 'y'; }
   Vec3l first_voxel() const override { return lo_; }
@@ -75,7 +82,9 @@ class Schematic final : public VoxelSource {
           nbt_.fail(box.at, "block " + std::to_string(number) + " is not in the palette of " +
                                 std::to_string(box.palette.size()));
         const BlockLook look = box.palette[static_cast<std::size_t>(number)];
-        if (look.is_set) voxels.add(from + place, look.color);
+        if (!look.is_set) return;
+        if (has_labels_) voxels.add_label(look.label);
+        voxels.add(from + place, look.color);
       };
       switch (box.form) {
         case BlockBox::Form::kVarints:
@@ -86,7 +95,10 @@ class Schematic final : public VoxelSource {
           break;
         case BlockBox::Form::kBytes:
           for (std::size_t i = 0; i < box.blocks(); ++i)
-            if (box.data[i] != 0 || has_more_bits(box, i)) voxels.add(from + box.place(i));
+            if (const Label number = number_in(box, i); number != 0) {
+              if (has_labels_) voxels.add_label(number);
+              voxels.add(from + box.place(i));
+            }
           break;
         case BlockBox::Form::kList:
           nbt_.for_each_item(box.list, [&](NbtTag block) {
@@ -103,9 +115,10 @@ class Schematic final : public VoxelSource {
   }
 
  private:
-  static bool has_more_bits(const BlockBox& box, std::size_t i) {
-    return i / 2 < box.more.size() &&
-           (static_cast<unsigned char>(box.more[i / 2]) & (i % 2 == 0 ? 0x0F : 0xF0)) != 0;
+  /// Returns the number of a block of MCEdit.
+  static Label number_in(const BlockBox& box, std::size_t i) {
+    const Label more = i / 2 < box.more.size() ? static_cast<unsigned char>(box.more[i / 2]) : 0;
+    return (i % 2 == 0 ? more & 0xF : more >> 4) << 8 | static_cast<unsigned char>(box.data[i]);
   }
 
   template <class Add>
@@ -179,7 +192,7 @@ class Schematic final : public VoxelSource {
   }
 
   /// The palette of Sponge has a number for each name. Numbers may be left out.
-  void read_palette(NbtTag palette, BlockBox& box) const {
+  void read_palette(NbtTag palette, BlockBox& box) {
     nbt_.for_each_entry(palette, [&](std::string_view name, NbtTag entry) {
       const std::int64_t number = nbt_.integer(entry);
       if (number < 0 || number > kMaxPalette)
@@ -192,7 +205,7 @@ class Schematic final : public VoxelSource {
   }
 
   /// The palettes of Litematica and of structures are lists of blocks with names.
-  void read_names(NbtTag palette, BlockBox& box) const {
+  void read_names(NbtTag palette, BlockBox& box) {
     nbt_.for_each_item(palette, [&](NbtTag block) {
       if (box.palette.size() > kMaxPalette) nbt_.fail(palette.at, "has more than 1048576 blocks");
       box.palette.push_back(look_of(nbt_.text(nbt_.get(block, "Name"))));
@@ -242,7 +255,12 @@ class Schematic final : public VoxelSource {
     boxes_.push_back(std::move(box));
   }
 
-  static BlockLook look_of(std::string_view name) { return {!is_air(name), color_of_block(name)}; }
+  BlockLook look_of(std::string_view name) {
+    if (is_air(name)) return {};
+    const auto label = names_.try_emplace(std::string(name.substr(0, name.find('['))),
+                                          static_cast<Label>(names_.size()) + 1);
+    return {true, color_of_block(name), label.first->second};
+  }
 
   /// Reads three numbers: entries x, y and z of a compound, the items of a list, or an array.
   Vec3l triple(NbtTag tag) const {
@@ -293,6 +311,8 @@ class Schematic final : public VoxelSource {
   std::filesystem::path path_;
   MappedFile mapping_;
   Nbt nbt_;
+  bool has_labels_;
+  std::map<std::string, Label> names_;  ///< Of blocks, without their states.
   std::vector<BlockBox> boxes_;
   Grid grid_;
   Vec3l lo_;
@@ -300,8 +320,9 @@ class Schematic final : public VoxelSource {
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> open_schematic(const std::filesystem::path& path) {
-  return std::make_unique<Schematic>(path);
+std::unique_ptr<VoxelSource> open_schematic(const std::filesystem::path& path,
+                                            const LabelRequest& labels) {
+  return std::make_unique<Schematic>(path, labels.has_value());
 }
 
 }  // namespace voxdag

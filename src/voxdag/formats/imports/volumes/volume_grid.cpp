@@ -135,6 +135,7 @@ void VolumeMap::visit_cubes(const VoxelBatch& voxels, const VisitBatch& visit) c
     for (double z = lo.z; z < hi.z; ++z)
       for (double y = lo.y; y < hi.y; ++y)
         for (double x = lo.x; x < hi.x; ++x) {
+          if (!voxels.labels.empty()) out.add_label(voxels.labels[i]);
           if (voxels.colors.empty())
             out.add({x, y, z});
           else

@@ -16,7 +16,8 @@ std::unique_ptr<VoxelSource> open_binvox(const std::filesystem::path& path);
 /// a file with several volumes only the first one is read. The place comes from the sform, else
 /// from the qform; both hold centres of voxels. Lengths are in the unit of the file.
 std::unique_ptr<VoxelSource> open_nifti(const std::filesystem::path& path,
-                                        std::optional<double> threshold);
+                                        std::optional<double> threshold,
+                                        const LabelRequest& labels = {});
 
 /// Opens an array of NumPy. Its shape decides: (N, 3) and (N) are points or voxels, as
 /// open_npy_points() says. (X, Y, Z) is a volume of bools, integers or real numbers; element
@@ -24,7 +25,8 @@ std::unique_ptr<VoxelSource> open_nifti(const std::filesystem::path& path,
 /// colours: an RGBA voxel is set by its alpha, an RGB voxel by the greatest of its channels.
 /// Volumes are in C or Fortran order. Throws Error if a threshold is given for points.
 std::unique_ptr<VoxelSource> open_npy(const std::filesystem::path& path,
-                                      std::optional<double> threshold);
+                                      std::optional<double> threshold,
+                                      const LabelRequest& labels = {});
 
 /// Opens a volume of NRRD, with its data in the same file or in one of the same folder: raw, gzip,
 /// ascii or hex. The first axis is x. A first axis of 3 or 4 values of uint8 is a colour: an RGBA
@@ -32,7 +34,8 @@ std::unique_ptr<VoxelSource> open_npy(const std::filesystem::path& path,
 /// first or last of four axes is "list", its layers are joined. The space origin is the centre of
 /// voxel (0, 0, 0). Format: see nrrd_header.hpp.
 std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
-                                       std::optional<double> threshold);
+                                       std::optional<double> threshold,
+                                       const LabelRequest& labels = {});
 
 /// Opens a folder of PNG files of one size as a volume. The files whose names end in .png and do
 /// not begin with a dot are sorted by name, numbers by their value: slice_9.png comes before
@@ -67,17 +70,20 @@ std::unique_ptr<VoxelSource> open_vdb(const std::filesystem::path& path,
                                       const std::string& grid = {});
 
 /// Opens a scene of MagicaVoxel: every visible model, with the colours of the palette. A voxel
-/// keeps its coordinates x, y, z (z is up), less the least ones of the scene, which are the origin
-/// of grid(); a voxel has size 1. Animations show their first frame. Where models overlap, all of
-/// them set the voxel. Format: see vox_file.hpp.
-std::unique_ptr<VoxelSource> open_vox(const std::filesystem::path& path);
+/// has its index in the palette as label, and keeps its coordinates x, y, z (z is up), less the
+/// least ones of the scene, which are the origin of grid(); a voxel has size 1. Animations show
+/// their first frame. Where models overlap, all of them set the voxel. Format: see vox_file.hpp.
+std::unique_ptr<VoxelSource> open_vox(const std::filesystem::path& path,
+                                      const LabelRequest& labels = {});
 
 /// Opens blocks of Minecraft: a schematic of Sponge (.schem) or MCEdit (.schematic), regions of
 /// Litematica (.litematic), or a structure (.nbt); the contents tell which. All blocks but air set
 /// their voxels, with the colours of color_of_block(); those of MCEdit have numbers and no colours.
+/// Labels number the names of blocks, without their states, in the order of the palettes.
 /// A block keeps the coordinates of the file, less the least ones of its boxes, which are the
 /// origin of grid(); y is up; a block has size 1. Where regions overlap, all of them set the voxel.
-std::unique_ptr<VoxelSource> open_schematic(const std::filesystem::path& path);
+std::unique_ptr<VoxelSource> open_schematic(const std::filesystem::path& path,
+                                            const LabelRequest& labels = {});
 
 /// Opens a map of OctoMap: .bt, whose nodes are occupied or free, or .ot of the types OcTree and
 /// ColorOcTree. The cells of the leaves that are occupied set their voxels, with their colours if

@@ -141,8 +141,11 @@ constexpr std::uint64_t kMaxSceneVoxels = std::uint64_t{1} << 36;
 
 class Vox : public VoxelSource {
  public:
-  explicit Vox(const std::filesystem::path& path)
-      : path_(path), mapping_(path), file_(parse_vox(path, mapping_.text())) {
+  Vox(const std::filesystem::path& path, bool has_labels)
+      : path_(path),
+        mapping_(path),
+        file_(parse_vox(path, mapping_.text())),
+        has_labels_(has_labels) {
     instances_ = place_models(path, file_);
     find_extent();
   }
@@ -150,6 +153,7 @@ class Vox : public VoxelSource {
   bool has_points() const override { return false; }
   bool has_colors() const override { return true; }
   bool has_palette() const override { return true; }
+  bool has_labels() const override { return has_labels_; }
   std::optional<Grid> grid() const override { return grid_; }
   Vec3l first_voxel() const override { return lo_; }
   std::vector<std::string> warnings() const override {
@@ -169,9 +173,10 @@ class Vox : public VoxelSource {
           reinterpret_cast<const unsigned char*>(mapping_.text().data() + model.first_voxel);
       for (std::uint32_t i = 0; i < model.count; ++i, bytes += 4) {
         const Vec3i voxel{bytes[0], bytes[1], bytes[2]};
-        if (bytes[3] != 0 && model.contains(voxel))
-          voxels.add(static_cast<Vec3d>(instance.place(voxel, model.size) - lo_),
-                     file_.palette[bytes[3]]);
+        if (bytes[3] == 0 || !model.contains(voxel)) continue;
+        if (has_labels_) voxels.add_label(bytes[3]);
+        voxels.add(static_cast<Vec3d>(instance.place(voxel, model.size) - lo_),
+                   file_.palette[bytes[3]]);
       }
     }
     voxels.finish();
@@ -205,6 +210,7 @@ class Vox : public VoxelSource {
   std::filesystem::path path_;
   MappedFile mapping_;
   VoxFile file_;
+  bool has_labels_;
   std::vector<VoxInstance> instances_;
   Grid grid_;
   Vec3l lo_;
@@ -212,8 +218,9 @@ class Vox : public VoxelSource {
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> open_vox(const std::filesystem::path& path) {
-  return std::make_unique<Vox>(path);
+std::unique_ptr<VoxelSource> open_vox(const std::filesystem::path& path,
+                                      const LabelRequest& labels) {
+  return std::make_unique<Vox>(path, labels.has_value());
 }
 
 }  // namespace voxdag
