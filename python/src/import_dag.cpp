@@ -10,6 +10,7 @@
 #include "dag.hpp"
 #include "grid_arguments.hpp"
 #include "run_work.hpp"
+#include "voxdag/builders/dag/ray_space.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/formats/imports/import_model.hpp"
 #include "voxdag/formats/imports/labels/label_value.hpp"
@@ -230,6 +231,38 @@ DagPointer import_file(const std::filesystem::path& path, std::optional<std::int
   return dag;
 }
 
+std::pair<DagPointer, DagPointer> carve_rays(const ArrayLike& origins, const ArrayLike& ends,
+                                             std::optional<std::int64_t> resolution,
+                                             std::optional<double> pitch,
+                                             std::optional<Bounds> bounds,
+                                             const std::optional<ArrayLike>& hits) {
+  const GridRequest request = grid_request(resolution, pitch, bounds);
+  ArrayLike rows = origins;
+  if (origins.ndim() == 1) rows = ArrayLike(py::array(origins).attr("reshape")(1, -1));
+  const std::vector<Vec3d> from = rows_of<double>(rows, "origins"),
+                           to = rows_of<double>(ends, "ends");
+  std::vector<bool> hit;
+  if (hits) {
+    kind_of(*hits, "hits", "b", "bool");
+    if (hits->ndim() != 1) throw py::value_error("hits must have the shape (N,)");
+    const Array<bool> values(*hits);
+    hit.assign(values.data(), values.data() + values.size());
+  }
+  return run_work([&](Work work) {
+    RaySpace space = ray_space(from, to, hit, request, work);
+    const auto dag_of = [&](Svdag dag, const char* name) {
+      VdagMetadata metadata;
+      metadata.grid = space.grid;
+      metadata.source = {name, to.size(), 0};
+      metadata.build = settings_of(request);
+      metadata.presentation.cubes = true;
+      return std::make_shared<Dag>(DagModel(std::move(dag), {}, std::move(metadata), work));
+    };
+    return std::pair(dag_of(std::move(space.occupied), "ends of rays"),
+                     dag_of(std::move(space.free), "free space"));
+  });
+}
+
 }  // namespace
 
 void add_importers(py::module_& module) {
@@ -256,6 +289,17 @@ labels: (N,) whole numbers, which become materials.)");
 dense: [x, y, z]; those that are True, or not 0 in whole numbers, are voxels.
 resolution, pitch, origin: as for from_coords().
 labels: keep the values as labels, which become materials.)");
+  module.def(
+      "carve_rays", &carve_rays, py::arg("origins"), py::arg("ends"), py::kw_only(),
+      py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
+      py::arg("hits") = none,
+      R"(Makes the occupied and the free voxels of rays of a sensor. Returns two DAGs in one grid.
+
+A voxel in which a ray ends is occupied; one that rays pass through, and in which none ends, is free;
+all others are unknown. The rule is exact: points are rounded to 1/256 voxel (design.md, exact cover).
+origins: (N, 3), or (3,) for all rays; ends: (N, 3); world units.
+resolution, pitch, bounds: as for build(). Parts of rays outside of bounds are left out.
+hits: (N,) bool: False for rays that met nothing, whose last voxel is free, too.)");
   module.def("import_file", &import_file, py::arg("path"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("origin") = none,
              py::arg("bounds") = none, py::arg("threshold") = none, py::arg("grid") = "",

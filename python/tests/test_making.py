@@ -175,3 +175,25 @@ def test_meshes_of_other_libraries():
 def test_bad_arguments_are_value_errors(call, reason):
     with pytest.raises(ValueError, match=reason):
         call()
+
+
+def test_rays_make_occupied_and_free_voxels():
+    ends = np.array([[7.5, 0.5, 0.5], [0.5, 6.5, 0.5], [0.5, 0.5, 30.0]])
+    box = ((0, 0, 0), (8, 8, 8))
+    occupied, free = voxdag.carve_rays([0.5, 0.5, 0.5], ends, pitch=1.0, bounds=box)
+    assert sorted(occupied.coords().tolist()) == [[0, 6, 0], [7, 0, 0]]
+    assert len(free) == 7 + 5 + 7 and (occupied & free).coords().size == 0
+    occupied, free = voxdag.carve_rays(np.full((3, 3), 0.5), ends, pitch=1.0, bounds=box, hits=[True, False, True])
+    assert occupied.coords().tolist() == [[7, 0, 0]]
+    assert free.contains([[0.5, 6.5, 0.5], [7.5, 0.5, 0.5]]).tolist() == [True, False]
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (([[0, 0, 0]] * 2, [[1, 1, 1]] * 3, None), "an origin each"),
+    (([0, 0, 0], [[1, 1, 1]], [True, False]), "whether they hit"),
+    (([0, 0, 0], [[1, np.nan, 1]], None), "ray 0 is not finite"),
+])
+def test_rays_that_are_none_are_refused(arguments, message):
+    origins, ends, hits = arguments
+    with pytest.raises(ValueError, match=message):
+        voxdag.carve_rays(origins, ends, pitch=1.0, hits=hits)

@@ -23,12 +23,12 @@ from ._edit import Edit, edit as _edit
 from ._signatures import documented as _documented
 from ._voxdag import Snapshot  # noqa: F401
 
-__all__ = ["Dag", "Edit", "Snapshot", "build", "build_mesh", "from_coords", "from_dense", "from_points", "import_file",
-           "load", "open"]
+__all__ = ["Dag", "Edit", "Snapshot", "build", "build_mesh", "carve_rays", "from_coords", "from_dense", "from_points",
+           "import_file", "load", "open"]
 
 
-build_mesh, from_coords, from_dense, import_file, open = map(_documented, (  # noqa: A001
-    _voxdag.build_mesh, _voxdag.from_coords, _voxdag.from_dense, _voxdag.import_file,
+build_mesh, carve_rays, from_coords, from_dense, import_file, open = map(_documented, (  # noqa: A001
+    _voxdag.build_mesh, _voxdag.carve_rays, _voxdag.from_coords, _voxdag.from_dense, _voxdag.import_file,
     _voxdag.open))
 for _name, _member in list(vars(Dag).items()):
     if callable(_member) and not _name.startswith("_"):

@@ -265,6 +265,9 @@ def from_coords(coords: ArrayLike, *, resolution: int | None = None, pitch: floa
                 labels: ArrayLike | None = None) -> Dag: ...
 def from_dense(dense: ArrayLike, *, resolution: int | None = None, pitch: float | None = None,
                origin: _Triple | None = None, labels: bool = False) -> Dag: ...
+def carve_rays(origins: ArrayLike, ends: ArrayLike, *, resolution: int | None = None,
+               pitch: float | None = None, bounds: _Bounds | None = None,
+               hits: ArrayLike | None = None) -> tuple[Dag, Dag]: ...
 def import_file(path: _Path, *, resolution: int | None = None, pitch: float | None = None,
                 origin: _Triple | None = None, bounds: _Bounds | None = None,
                 threshold: float | None = None, grid: str = "", colors: bool = True,
