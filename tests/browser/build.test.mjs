@@ -33,7 +33,7 @@ async function shown(page, name) {
     const failed = document.querySelector('.toast.error:not([hidden])')?.textContent;
     if (failed) throw new Error(failed);
     return /** @type {any} */ (window).voxdag.viewer.file === name && document.querySelector('.job')?.hasAttribute('hidden');
-  }, {}, name);
+  }, { polling: 100 }, name);  // Pages in the background have no frames.
   return page.evaluate(() => {
     const { info } = /** @type {any} */ (window).voxdag.viewer;
     return { resolution: info.resolution, voxels: info.voxels, hasColors: info.hasColors };
@@ -281,7 +281,9 @@ describeInBrowsers('build', (browserName, browser) => {
     await page.evaluate((/** @type {string} */ text) => {
       const data = new DataTransfer();
       data.items.add(new File([text], 'pasted.obj'));
-      window.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, bubbles: true }));
+      const event = new ClipboardEvent('paste', { bubbles: true });
+      Object.defineProperty(event, 'clipboardData', { value: data });  // Firefox does not take it from a script
+      window.dispatchEvent(event);
     }, square(''));
     await shown(page, 'pasted.vdag');
 
@@ -293,7 +295,8 @@ describeInBrowsers('build', (browserName, browser) => {
       fs.writeFileSync(path.join(model, 'square.mtl'), 'newmtl paint\nmap_Kd textures/paint.png\n');
       fs.writeFileSync(path.join(model, 'textures/paint.png'), png());
       const protocol = await page.createCDPSession(), data = { items: [], files: [model], dragOperationsMask: 1 };
-      for (const type of /** @type {const} */ (['dragEnter', 'dragOver', 'drop'])) await protocol.send('Input.dispatchDragEvent', { type, x: 120, y: 100, data });
+      // The page shows where to drop, so that a hand passes two elements.
+      for (const type of /** @type {const} */ (['dragEnter', 'dragOver', 'dragOver', 'drop'])) await protocol.send('Input.dispatchDragEvent', { type, x: 120, y: 100, data });
       assert.ok((await shown(page, 'painted.vdag')).hasColors);
     }
 
