@@ -1,5 +1,5 @@
 /// Fuzzes the readers of points: any bytes give points or an Error. The first byte chooses the
-/// format; the others are the file.
+/// format, and whether labels are read; the others are the file.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -13,16 +13,20 @@
 
 namespace {
 
-using Open = std::unique_ptr<voxdag::VoxelSource> (*)(const std::filesystem::path&);
+using Path = std::filesystem::path;
+using voxdag::LabelRequest;
+using Open = std::unique_ptr<voxdag::VoxelSource> (*)(const Path&, const LabelRequest&);
 constexpr Open kReaders[] = {
-    [](const std::filesystem::path& path) { return voxdag::open_ply_points(path); },
+    [](const Path& path, const LabelRequest& labels) {
+      return voxdag::open_ply_points(path, false, labels);
+    },
     voxdag::open_las_points,
     voxdag::open_pcd_points,
     voxdag::open_xyz_points,
-    [](const std::filesystem::path& path) {
-      return voxdag::open_npy_points(path, voxdag::read_npy_start(path));
+    [](const Path& path, const LabelRequest& labels) {
+      return voxdag::open_npy_points(path, voxdag::read_npy_start(path), labels);
     },
-    [](const std::filesystem::path& path) { return voxdag::open_splat_file(path); }};
+    [](const Path& path, const LabelRequest&) { return voxdag::open_splat_file(path); }};
 
 /// A file in memory.
 class MemoryFile {
@@ -45,11 +49,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const MemoryFile file(data + 1, size - 1);
   try {
-    const auto source = kReaders[data[0] % std::size(kReaders)](file.path());
+    const LabelRequest labels = data[0] >= 128 ? LabelRequest("") : std::nullopt;
+    const auto source = kReaders[data[0] % std::size(kReaders)](file.path(), labels);
     std::uint64_t points = 0;
     source->visit_all([&](const voxdag::VoxelBatch& batch) {
       points += batch.places.size();
       if (batch.colors.size() != (source->has_colors() ? batch.places.size() : 0)) abort();
+      if (batch.labels.size() != (source->has_labels() ? batch.places.size() : 0)) abort();
       if (batch.splats.size() != (source->has_splats() ? batch.places.size() : 0)) abort();
     });
     // No format holds a point in less than three bytes, compressed by at most 88.

@@ -1,5 +1,6 @@
-/// Fuzzes the readers of volumes. The first byte chooses the reader and the threshold, the rest is
-/// the file. The voxels must lie in the grid of the file, or an Error must follow.
+/// Fuzzes the readers of volumes. The first byte chooses the reader, the threshold and whether
+/// labels are read, the rest is the file. The voxels must lie in the grid of the file, or an Error
+/// must follow.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -35,26 +36,28 @@ class MemoryFile {
 std::unique_ptr<VoxelSource> open_chosen(std::uint8_t choice, const std::string& path) {
   std::optional<double> threshold;
   if (choice >= 128) threshold = 1.5;
+  const LabelRequest labels = (choice & 64) != 0 ? LabelRequest("") : std::nullopt;
   switch (choice % 7) {
     case 0:
-      return open_vox(path);
+      return open_vox(path, labels);
     case 1:
       return open_binvox(path);
     case 2:
-      return open_npy(path, threshold);
+      return open_npy(path, threshold, labels);
     case 3:
-      return open_nrrd(path, threshold);
+      return open_nrrd(path, threshold, labels);
     case 4:
-      return open_schematic(path);
+      return open_schematic(path, labels);
     case 5:
       return open_octomap(path, choice >= 128 ? std::optional(0.7) : std::nullopt);
     default:
-      return open_nifti(path, threshold);
+      return open_nifti(path, threshold, labels);
   }
 }
 
 void check(const VoxelSource& source, const VoxelBatch& batch) {
   if (batch.colors.size() != (source.has_colors() ? batch.places.size() : 0)) std::abort();
+  if (batch.labels.size() != (source.has_labels() ? batch.places.size() : 0)) std::abort();
   if (!source.grid()) return;
   const auto side = static_cast<double>(source.grid()->resolution());
   for (const Vec3d place : batch.places)
