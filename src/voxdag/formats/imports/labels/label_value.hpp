@@ -17,9 +17,9 @@ namespace voxdag {
 /// The names of the fields that usually hold labels, in small letters. The first one that a file
 /// has is read.
 inline constexpr std::string_view kLabelFields[] = {
-    "label",        "labels",         "class",    "classification", "scalar_classification",
-    "scalar_label", "semantic",       "category", "object_id",      "instance",
-    "instance_id",  "scalar_instance"};
+    "label",        "labels",          "class",    "classification", "scalar_classification",
+    "scalar_label", "semantic",        "category", "object_id",      "instance",
+    "instance_id",  "scalar_instance", "material"};
 
 /// Returns the index, from 0 to `count`, of the field that has the labels. `name_of(i)` is the name
 /// of field i. `wanted` is VoxelSourceOptions::labels. Capitals do not matter. Throws Error,
