@@ -120,16 +120,22 @@ ImportOptions options_of_voxels(const std::optional<std::int64_t>& resolution,
   return options;
 }
 
+/// Imports places with the colours and labels of their rows.
+DagPointer import_rows(std::vector<Vec3d> places, const std::optional<ArrayLike>& colors,
+                       const std::optional<ArrayLike>& labels, bool has_points,
+                       const ImportOptions& options, const std::string& name) {
+  std::vector<Rgb8> values = colors_of_rows(colors, places.size());
+  std::vector<Label> numbers = labels_of_rows(labels, places.size());
+  const ArraySource source(std::move(places), std::move(values), std::move(numbers), has_points);
+  return import_arrays(source, options, name);
+}
+
 DagPointer from_points(const ArrayLike& points, std::optional<std::int64_t> resolution,
                        std::optional<double> pitch, std::optional<Bounds> bounds,
                        const std::optional<ArrayLike>& colors,
                        const std::optional<ArrayLike>& labels) {
-  const ImportOptions options = import_options(grid_request(resolution, pitch, bounds));
-  std::vector<Vec3d> places = rows_of<double>(points, "points");
-  std::vector<Rgb8> values = colors_of_rows(colors, places.size());
-  std::vector<Label> numbers = labels_of_rows(labels, places.size());
-  const ArraySource source(std::move(places), std::move(values), std::move(numbers), true);
-  return import_arrays(source, options, "points");
+  return import_rows(rows_of<double>(points, "points"), colors, labels, true,
+                     import_options(grid_request(resolution, pitch, bounds)), "points");
 }
 
 DagPointer from_coords(const ArrayLike& coords, std::optional<std::int64_t> resolution,
@@ -139,30 +145,41 @@ DagPointer from_coords(const ArrayLike& coords, std::optional<std::int64_t> reso
   const ImportOptions options = options_of_voxels(resolution, pitch, origin);
   std::vector<Vec3d> places;
   for (const Vec3i v : voxels_of(coords, "coords")) places.push_back(Vec3d(v));
-  std::vector<Rgb8> values = colors_of_rows(colors, places.size());
-  std::vector<Label> numbers = labels_of_rows(labels, places.size());
-  const ArraySource source(std::move(places), std::move(values), std::move(numbers), false);
-  return import_arrays(source, options, "coords");
+  return import_rows(std::move(places), colors, labels, false, options, "coords");
+}
+
+/// Calls add(place, value) for the values of a dense array that are not 0.
+template <class T, class Add>
+void visit_dense(const Array<T>& dense, const Add& add) {
+  const auto at = dense.template unchecked<3>();
+  for (py::ssize_t x = 0; x < dense.shape(0); ++x)
+    for (py::ssize_t y = 0; y < dense.shape(1); ++y)
+      for (py::ssize_t z = 0; z < dense.shape(2); ++z)
+        if (at(x, y, z) != T{})
+          add(Vec3d{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)},
+              at(x, y, z));
 }
 
 DagPointer from_dense(const ArrayLike& given, std::optional<std::int64_t> resolution,
                       const std::optional<double>& pitch, const std::optional<Point>& origin,
                       bool labels) {
   if (given.ndim() != 3) throw py::value_error("dense must have three dimensions: x, y, z");
-  kind_of(given, "dense", "biu", "bool or whole numbers: compare real ones, dense > 0.5");
-  const Array<std::int64_t> dense(given);
+  const char kind =
+      kind_of(given, "dense", "biu", "bool or whole numbers: compare real ones, dense > 0.5");
   std::vector<Vec3d> places;
   std::vector<Label> values;
-  const auto at = dense.unchecked<3>();
+  const auto add_label = [&](Vec3d place, auto value) {
+    places.push_back(place);
+    values.push_back(label_of(value));
+  };
+  if (!labels)
+    visit_dense(Array<bool>(given), [&](Vec3d place, bool) { places.push_back(place); });
+  else if (kind == 'u')
+    visit_dense(Array<std::uint64_t>(given), add_label);
+  else
+    visit_dense(Array<std::int64_t>(given), add_label);
   std::int64_t side = 1 << kMinLevels;
-  for (int axis = 0; axis < 3; ++axis) side = std::max<std::int64_t>(side, dense.shape(axis));
-  for (py::ssize_t x = 0; x < dense.shape(0); ++x)
-    for (py::ssize_t y = 0; y < dense.shape(1); ++y)
-      for (py::ssize_t z = 0; z < dense.shape(2); ++z) {
-        if (at(x, y, z) == 0) continue;
-        places.push_back({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
-        if (labels) values.push_back(label_of(at(x, y, z)));
-      }
+  for (int axis = 0; axis < 3; ++axis) side = std::max<std::int64_t>(side, given.shape(axis));
   const auto least = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(side)));
   const ImportOptions options = options_of_voxels(resolution.value_or(least), pitch, origin);
   const ArraySource source(std::move(places), {}, std::move(values), false);

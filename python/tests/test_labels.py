@@ -41,8 +41,11 @@ def test_dense_arrays_hold_labels():
     dense[1, 2, 3], dense[0, 0, 4] = 300, -7
     dag = voxdag.from_dense(dense, labels=True)
     assert dag.labels([[1, 2, 3], [0, 0, 4]]).tolist() == [300, -7]
+    assert voxdag.from_dense(dense.astype(bool), labels=True).labels([[1, 2, 3]]).tolist() == [1]
     with pytest.raises(ValueError, match="no materials"):
         voxdag.from_dense(dense).materials()
+    with pytest.raises(ValueError, match="has the label 18446744073709551616"):
+        voxdag.from_dense(np.full((1, 1, 1), 2 ** 64 - 1, np.uint64), labels=True)
 
 
 def test_files_have_labels(tmp_path):

@@ -99,11 +99,7 @@ void add_components_command(const Command& program, Session& session) {
               "Keep the components with N voxels or more")
       .needs(output)
       .not_with(largest);
-  add_value_options(command, edit, false, [&edit] { return !edit.output.empty(); });
-  add_memory_option(command, edit.memory_limit);
-  add_json_option(command, session);
-  add_threads_option(command, session);
-  add_quiet_option(command, session);
+  add_listing_options(command, edit, session);
   command.when_parsed([arguments, &session] {
     if (!arguments->edit.output.empty() && !arguments->largest && arguments->least == 0)
       throw UsageError("--output", "needs --largest or --at-least");

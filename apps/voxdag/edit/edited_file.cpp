@@ -37,6 +37,14 @@ Option add_optional_output(const Command& command, EditArguments& arguments,
   return output;
 }
 
+void add_listing_options(const Command& command, EditArguments& arguments, Session& session) {
+  add_value_options(command, arguments, false, [&arguments] { return !arguments.output.empty(); });
+  add_memory_option(command, arguments.memory_limit);
+  add_json_option(command, session);
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+}
+
 void add_neighbours_option(const Command& command, Neighbours& neighbours) {
   command.parsed(
       "--neighbours", neighbours,

@@ -32,10 +32,14 @@ void add_value_options(
     const Command& command, EditArguments& arguments, bool makes_voxels,
     const std::function<bool()>& is_written = [] { return true; });
 
-/// Adds --output, --compact and --plain for a command whose output is optional: `help` says what it
-/// writes. Returns --output.
+/// Adds --output, --compact and --plain for a command whose output is optional: `help`
+/// says what it writes. Returns --output. add_listing_options() adds the rest.
 Option add_optional_output(const Command& command, EditArguments& arguments,
                            const std::string& help);
+
+/// Adds --color-bound, --normal-bound, --drop-attributes, --memory, --json, --threads and --quiet
+/// for a command that lists something, and writes a file if --output is given.
+void add_listing_options(const Command& command, EditArguments& arguments, Session& session);
 
 /// Adds --neighbours.
 void add_neighbours_option(const Command& command, Neighbours& neighbours);

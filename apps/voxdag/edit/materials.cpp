@@ -53,7 +53,7 @@ void print_materials(const DagModel& file, const std::vector<MaterialVoxels>& vo
   std::size_t widest = 8;
   for (const std::string& name : *attributes.materials) widest = std::max(widest, name.size());
   widest = std::min<std::size_t>(widest, 40);
-  fmt::print("{}: {} materials\n  {:>10}  {:<{}}{:>18}  window\n", session.named(session.subject),
+  fmt::print("{}: materials: {}\n  {:>10}  {:<{}}{:>18}  window\n", session.named(session.subject),
              with_commas(order.size()), kind, "name", widest, "voxels");
   for (const std::size_t i : order) {
     const Box3i& box = voxels[i].bounds;
@@ -120,11 +120,7 @@ void add_materials_command(const Command& program, Session& session) {
       .parsed("--drop", arguments->drop, parse_words, "NAME,...", "Keep the voxels of all others")
       .needs(output)
       .not_with(keep);
-  add_value_options(command, edit, false, [&edit] { return !edit.output.empty(); });
-  add_memory_option(command, edit.memory_limit);
-  add_json_option(command, session);
-  add_threads_option(command, session);
-  add_quiet_option(command, session);
+  add_listing_options(command, edit, session);
   command.when_parsed([arguments, &session] {
     if (!arguments->edit.output.empty() && arguments->keep.empty() && arguments->drop.empty())
       throw UsageError("--output", "needs --keep or --drop");

@@ -209,6 +209,16 @@ TEST(Labels, AModelNamesItsMaterialsAndCountsThem) {
       brute_svdag(4, kept));
 }
 
+TEST(Labels, OfAPaletteHaveTwentyOneBits) {
+  const LabelledVoxels least({{{0, 0, 0}, 0}, {{1, 0, 0}, (1 << 21) - 1}}, true);
+  EXPECT_EQ(import_labels(least, 2).labels, (std::vector<Label>{0, (1 << 21) - 1}));
+  for (const Label label : {Label{-1}, Label{1} << 21})
+    EXPECT_NE(error_of([&] {
+                import_labels(LabelledVoxels({{{0, 0, 0}, label}}, true), 2);
+              }).find("labels of a palette are from 0 to 2097151"),
+              std::string::npos);
+}
+
 TEST(Labels, TooManyAreRefused) {
   std::vector<LabelledVoxel> voxels;
   for (int i = 0; i <= 65535; ++i) voxels.push_back({{i & 63, i >> 6 & 63, i >> 12}, i});
@@ -315,6 +325,15 @@ TEST_F(LabelFiles, NpyHasThemInAFieldOrAsValues) {
   std::string real;
   append(real, 2.5);
   EXPECT_TRUE(has(error("v.npy", npy("'<f8'", "(1, 1, 1)", real)), "has the label 2.5"));
+}
+
+TEST_F(LabelFiles, SplatsHaveNone) {
+  const std::string splats =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float opacity\nproperty float scale_0\nproperty float scale_1\n"
+      "property float scale_2\nproperty float rot_0\nproperty float rot_1\nproperty float rot_2\n"
+      "property float rot_3\nproperty int label\nend_header\n0 0 0 1 1 1 1 1 0 0 0 5\n";
+  EXPECT_TRUE(has(error("s.ply", splats), "holds splats, which have no labels"));
 }
 
 TEST_F(LabelFiles, FormatsWithoutLabelsSaySo) {

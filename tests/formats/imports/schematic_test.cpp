@@ -8,6 +8,7 @@
 #include "volume_files.hpp"
 #include "voxdag/formats/exports/grids/block_palette.hpp"
 #include "voxdag/formats/exports/grids/export_schem.hpp"
+#include "voxdag/formats/imports/moved_source.hpp"
 
 namespace voxdag {
 namespace {
@@ -239,6 +240,25 @@ TEST_F(SchematicFile, LabelsAreTheNamesOfBlocks) {
     expected.push_back(name.substr(0, name.find('[')));
   }
   EXPECT_EQ(found, expected);
+}
+
+TEST_F(SchematicFile, FilesThatNumberTheirBlocksOtherwiseAreNotJoined) {
+  const auto open_labels = [&](const char* name, const char* block) {
+    write(name, nbt_compound("Schematic", nbt_short("Width", 1) + nbt_short("Height", 1) +
+                                              nbt_short("Length", 1) +
+                                              nbt_compound("Palette", nbt_int(block, 0)) +
+                                              nbt_bytes("BlockData", std::string(1, '\0'))));
+    return open_voxel_source(path(name), {.labels = ""});
+  };
+  const auto join = [&](const char* first, const char* second) {
+    std::vector<std::unique_ptr<VoxelSource>> sources;
+    sources.push_back(open_labels("a.schem", first));
+    sources.push_back(open_labels("b.schem", second));
+    return joined_source(std::move(sources))->label_names();
+  };
+  EXPECT_EQ(join("minecraft:stone", "minecraft:stone").at(1), "minecraft:stone");
+  EXPECT_TRUE(has(error_of([&] { join("minecraft:stone", "minecraft:dirt"); }),
+                  "its label 1 is 'minecraft:dirt', and that of another file is"));
 }
 
 TEST_F(SchematicFile, DamageIsFound) {

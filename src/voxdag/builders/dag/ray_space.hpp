@@ -1,5 +1,5 @@
 #pragma once
-/// What rays of a sensor say about space: occupied, free, or unknown.
+/// Finds the voxels that the rays of a sensor end in, and those that they pass through.
 #include <span>
 #include <vector>
 

@@ -11,7 +11,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
-#include "voxdag/formats/imports/labels/cell_labels.hpp"
+#include "voxdag/formats/imports/labels/label_collector.hpp"
 #include "voxdag/formats/imports/labels/label_names.hpp"
 #include "voxdag/formats/imports/splats/import_splats.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"

@@ -7,6 +7,7 @@
 
 #include "voxdag/algebra/align_grids.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/printable.hpp"
 #include "voxdag/formats/imports/derived_source.hpp"
 
 namespace voxdag {
@@ -145,6 +146,7 @@ class JoinedSource final : public VoxelSource {
         throw Error("", "", "is joined with others: all of them must hold splats, or none");
       if (source.has_labels() != has_labels())
         throw Error("", "", "is joined with others: all of them must have labels, or none");
+      if (source.has_labels()) add_names(source.label_names());
       has_colors_ |= source.has_colors();
       if (!has_points()) add_grid(i);
     }
@@ -154,11 +156,7 @@ class JoinedSource final : public VoxelSource {
   bool has_colors() const override { return has_colors_; }
   bool has_splats() const override { return sources_[0]->has_splats(); }
   bool has_labels() const override { return sources_[0]->has_labels(); }
-  std::map<Label, std::string> label_names() const override {
-    std::map<Label, std::string> names;
-    for (const auto& source : sources_) names.merge(source->label_names());
-    return names;
-  }
+  std::map<Label, std::string> label_names() const override { return label_names_; }
   bool has_palette() const override {
     return std::all_of(sources_.begin(), sources_.end(),
                        [](const auto& source) { return source->has_palette(); });
@@ -196,6 +194,15 @@ class JoinedSource final : public VoxelSource {
   }
 
  private:
+  /// Adds the names of a source. Each file of Minecraft numbers its own blocks.
+  void add_names(const std::map<Label, std::string>& names) {
+    for (const auto& [label, name] : names)
+      if (const auto known = label_names_.emplace(label, name).first; known->second != name)
+        throw Error("", "",
+                    "is joined with others: its label " + std::to_string(label) + " is " +
+                        name_in_quotes(name) + ", and that of another file is " +
+                        name_in_quotes(known->second) + "; import them one by one, and combine");
+  }
   /// Lets the common grid hold that of source `i`.
   void add_grid(std::size_t i) {
     const std::optional<Grid> grid = sources_[i]->grid();
@@ -216,6 +223,7 @@ class JoinedSource final : public VoxelSource {
   std::vector<Vec3i> offsets_;  ///< Of the sources' voxels in the common grid.
   std::optional<Grid> grid_;
   bool has_colors_ = false;
+  std::map<Label, std::string> label_names_;
 };
 
 }  // namespace

@@ -161,7 +161,7 @@ bool is_voxel_source(const Path& name) {
 
 std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& options) {
   std::unique_ptr<VoxelSource> source = open_input_file(path, options);
-  if (options.labels && !source->has_labels())
+  if (options.labels && (source->has_splats() || !source->has_labels()))
     throw Error(path.string(), "",
                 source->has_splats() ? "holds splats, which have no labels"
                                      : "has a format of which no labels are read");

@@ -1,5 +1,5 @@
 #pragma once
-/// Finds the label of each cell of a DAG from those of its voxels.
+/// Collects the labels of voxels, and finds those of a DAG's cells.
 #include <filesystem>
 #include <unordered_set>
 #include <vector>
@@ -41,9 +41,9 @@ class LabelCollector {
   LabelCollector(int levels, std::size_t most_labels, const std::filesystem::path& folder,
                  Work work, ColorRule rule = ColorRule::kMean);
 
-  /// Adds a label of a voxel. By ColorRule::kLast, labels are from 0 to 2^20. Throws Error if the
-  /// voxel lies outside of the grid, for more than kMaxMaterials labels, or if a file cannot be
-  /// written; OverMemory and Cancelled.
+  /// Adds a label of a voxel. Throws Error if the voxel lies outside of the grid, for more than
+  /// kMaxMaterials labels, by ColorRule::kLast for labels that are not from 0 to 2^21 - 1, or if a
+  /// file cannot be written; OverMemory and Cancelled.
   void add(Vec3i voxel, Label label);
 
   /// Returns the DAG of all voxels. Throws as ColoredVoxelBuilder::finish().

@@ -1,4 +1,4 @@
-#include "voxdag/formats/imports/labels/cell_labels.hpp"
+#include "voxdag/formats/imports/labels/label_collector.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -123,6 +123,10 @@ void LabelCollector::add(Vec3i voxel, Label label) {
     throw Error("", "", "has more than " + std::to_string(kMaxMaterials) + " labels");
   newest_ = label;
   const std::uint64_t code = code_in_grid(voxel, levels_);
+  if (rule_ == ColorRule::kLast && label >> kLastBits != 0)
+    throw Error("", "",
+                "has the label " + std::to_string(label) +
+                    ", and labels of a palette are from 0 to 2097151");
   if (rule_ == ColorRule::kLast)
     records_.add({code, static_cast<Label>(added_++ << kLastBits) | label});
   else
