@@ -322,6 +322,8 @@ TEST_F(LabelFiles, NpyHasThemInAFieldOrAsValues) {
   EXPECT_EQ(labels("v.npy", npy("'<i2'", "(1, 2, 3)", volume)), kExpected);
   EXPECT_TRUE(has(error("c.npy", npy("'|u1'", "(1, 1, 2, 3)", "abcdef")), "holds colours"));
   EXPECT_TRUE(has(error("p.npy", npy("'<i2'", "(1, 3)", "abcdef")), "without fields"));
+  EXPECT_TRUE(has(error("v.npy", npy("'<i2'", "(1, 2, 3)", volume), "organ"),
+                  "has no fields, of which 'organ' could have labels"));
   std::string real;
   append(real, 2.5);
   EXPECT_TRUE(has(error("v.npy", npy("'<f8'", "(1, 1, 1)", real)), "has the label 2.5"));

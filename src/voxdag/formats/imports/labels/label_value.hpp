@@ -46,6 +46,14 @@ std::size_t find_label_field(const std::string& wanted, std::size_t count, const
                   "; its fields are " + (names.empty() ? "without names" : names));
 }
 
+/// Returns whether labels are wanted of a format that has one label for each voxel, and no fields.
+/// Throws Error, without a file, if a field is named.
+inline bool wants_labels(const LabelRequest& labels) {
+  if (labels && !labels->empty())
+    throw Error("", "", "has no fields, of which " + in_quotes(*labels) + " could have labels");
+  return labels.has_value();
+}
+
 /// Returns the label that a number of a file stands for. Throws Error, without a file, for numbers
 /// that are not whole or beyond 2^53.
 template <class Number>

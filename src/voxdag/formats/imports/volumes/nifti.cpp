@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/volumes/dense_source.hpp"
 #include "voxdag/formats/imports/volumes/gzip_stream.hpp"
 #include "voxdag/formats/imports/volumes/volume_grid.hpp"
@@ -275,7 +276,7 @@ std::unique_ptr<VoxelSource> open_nifti(const std::filesystem::path& path,
                  .encoding = is_gzip ? Encoding::kGzip : Encoding::kRaw,
                  .may_have_more = header.has_more_volumes};
   file.volume.threshold = threshold;
-  file.volume.has_labels = labels.has_value();
+  file.volume.has_labels = wants_labels(labels);
   file.map = VolumeMap(path, header.volume.size, header.placement, file.warnings);
   file.has_place = header.placement.is_known;
   if (header.has_more_volumes)

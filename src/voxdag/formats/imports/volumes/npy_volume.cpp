@@ -4,6 +4,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/printable.hpp"
 #include "voxdag/file/npy.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/npy_type.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/imports/volumes/dense_source.hpp"
@@ -53,7 +54,7 @@ std::unique_ptr<VoxelSource> open_npy(const std::filesystem::path& path,
                                       std::optional<double> threshold, const LabelRequest& labels) {
   const NpyStart start = read_npy_start(path);
   const std::size_t axes = start.header.shape.size();
-  if (axes == 3 || axes == 4) return open_volume(path, start, threshold, labels.has_value());
+  if (axes == 3 || axes == 4) return open_volume(path, start, threshold, wants_labels(labels));
   if (threshold) throw Error(path.string(), "", "has no values to compare with a threshold");
   return open_npy_points(path, start, labels);
 }

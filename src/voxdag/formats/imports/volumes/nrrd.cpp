@@ -1,6 +1,7 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/volumes/nrrd_header.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
 
@@ -56,7 +57,7 @@ std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
                  .begin = is_detached ? 0 : header.end,
                  .encoding = header.encoding};
   file.volume.threshold = threshold;
-  file.volume.has_labels = labels.has_value();
+  file.volume.has_labels = wants_labels(labels);
   skip_to_data(header, file);
   return make_dense_source(std::move(file));
 }

@@ -10,6 +10,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/volumes/block_color.hpp"
 #include "voxdag/formats/imports/volumes/nbt.hpp"
 #include "voxdag/formats/imports/volumes/volume_grid.hpp"
@@ -322,7 +323,7 @@ class Schematic final : public VoxelSource {
 
 std::unique_ptr<VoxelSource> open_schematic(const std::filesystem::path& path,
                                             const LabelRequest& labels) {
-  return std::make_unique<Schematic>(path, labels.has_value());
+  return std::make_unique<Schematic>(path, wants_labels(labels));
 }
 
 }  // namespace voxdag

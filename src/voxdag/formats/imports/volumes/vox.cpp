@@ -7,6 +7,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/volumes/volume_grid.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
 #include "voxdag/formats/imports/volumes/vox_file.hpp"
@@ -220,7 +221,7 @@ class Vox : public VoxelSource {
 
 std::unique_ptr<VoxelSource> open_vox(const std::filesystem::path& path,
                                       const LabelRequest& labels) {
-  return std::make_unique<Vox>(path, labels.has_value());
+  return std::make_unique<Vox>(path, wants_labels(labels));
 }
 
 }  // namespace voxdag
