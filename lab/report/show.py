@@ -5,6 +5,7 @@
 and prints the tables itself; `show plots` only checks that plots can be drawn."""
 
 import json
+import math
 import os
 from itertools import groupby
 
@@ -54,6 +55,7 @@ def trace_table(results):
                 theirs = row["rates"].get(rival)
                 text += f"{'-':>24}" if theirs is None else f"{theirs:>15.2f} ({rate / theirs:>5.2f}x)"
             text += "\n"
+    text += _trace_means(tables, rivals)
     lamps = [row for row in results if row["rays"] == "soft_lamp"]
     if lamps:
         text += ("\n  soft shadows of a lamp; its radius in parts of its distance\n"
@@ -61,6 +63,30 @@ def trace_table(results):
     for row in lamps:
         text += (f"  {row['light_size']:<14g}{with_commas(row['ray_count']):>12}{row['mrays_per_s']:>20.2f}"
                  f"{row['rival_mrays_per_s']:>20.2f}\n")
+    return text
+
+
+def _trace_means(tables, rivals):
+    """Returns, by grid, layout and kind of rays, the geometric mean over the scenes of voxdag's rate / the rival's, and the worst."""
+    ratios = {}
+    for row in (row for rows in tables for row in rows):
+        for rival, theirs in row["rates"].items():
+            for rays in (row["rays"], "all")[:1 if row["rays"] == "primary_beams" else 2]:  # rivals have no beams
+                of_rival = ratios.setdefault((_grid(row["resolution"]), row["layout"]), {}).setdefault(rays, {})
+                of_rival.setdefault(rival, []).append((row["mrays_per_s"] / theirs, row["scene"]))
+    text = ""
+    for (grid, layout), kinds in ratios.items():
+        if max(len(found) for found in next(iter(kinds.values())).values()) < 2:
+            continue
+        text += f"\nvoxdag / rival at {grid}, layout {layout}: geometric mean (worst, scene)\n"
+        text += f"  {'rays':<14}" + "".join(f"{rival:>40}" for rival in rivals) + "\n"
+        for rays in sorted(kinds, key=lambda rays: rays == "all"):
+            text += f"  {rays:<14}"
+            for rival in rivals:
+                found = kinds[rays].get(rival)
+                mean = found and math.exp(sum(math.log(ratio) for ratio, _ in found) / len(found))
+                text += f"{f'{mean:.2f} ({min(found)[0]:.2f}, {min(found)[1]})' if found else '-':>40}"
+            text += "\n"
     return text
 
 
