@@ -1,6 +1,6 @@
 # Finds the packages of the parts that are built. All packages are in Debian 12. If an optional
 # package is missing, one line says so.
-set(optional_packages assimp embree OpenVDB MPI CUDAToolkit)  # CUDAToolkit: cmake/VoxdagCuda.cmake
+set(optional_packages assimp embree OpenVDB TIFF GDCM MPI CUDAToolkit)  # CUDAToolkit: cmake/VoxdagCuda.cmake
 
 # The packages that an installed voxdag needs, by part: voxdagConfig.cmake.in reads them.
 set(VOXDAG_LIBRARY_PACKAGES Threads)
@@ -44,6 +44,20 @@ if("OpenVDB" IN_LIST VOXDAG_LIBRARY_PACKAGES)
   mark_as_advanced(NanoVDB_INCLUDE_DIR)
   if(NOT OpenVDB_FOUND)
     message(STATUS "voxdag: OpenVDB (libopenvdb-dev, libboost-dev) not found: voxdag reads no .vdb volumes")
+  endif()
+endif()
+
+if("TIFF" IN_LIST VOXDAG_LIBRARY_PACKAGES)
+  find_package(TIFF 4.5 QUIET)
+  if(NOT TIFF_FOUND)
+    message(STATUS "voxdag: libtiff 4.5 (libtiff-dev) not found: voxdag reads no stacks of TIFF")
+  endif()
+endif()
+
+if("GDCM" IN_LIST VOXDAG_LIBRARY_PACKAGES)
+  find_package(GDCM 3 QUIET)
+  if(NOT GDCM_FOUND)
+    message(STATUS "voxdag: GDCM 3 (libgdcm-dev) not found: voxdag reads no DICOM")
   endif()
 endif()
 

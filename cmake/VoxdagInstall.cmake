@@ -11,7 +11,7 @@ get_property(parts GLOBAL PROPERTY VOXDAG_TARGETS)
 set(VOXDAG_ROOM_TABLE "")
 foreach(room ${VOXDAG_ROOMS})
   set(packages ${VOXDAG_ROOM_${room}_PACKAGES})
-  list(REMOVE_ITEM packages OpenVDB MPI)  # only modules link them
+  list(REMOVE_ITEM packages OpenVDB TIFF GDCM MPI)  # only modules link them
   foreach(optional assimp embree CUDAToolkit)
     if(NOT ${optional}_FOUND)
       list(REMOVE_ITEM packages ${optional})
@@ -37,7 +37,7 @@ install(DIRECTORY ${PROJECT_BINARY_DIR}/installed_headers/voxdag DESTINATION ${C
 install(FILES ${PROJECT_SOURCE_DIR}/include/voxdag.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders DESTINATION ${CMAKE_INSTALL_DATADIR}/voxdag COMPONENT dev)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-foreach(module voxdag_vdb voxdag_vdb_export voxdag_mpi)
+foreach(module voxdag_vdb voxdag_vdb_export voxdag_tiff voxdag_dicom voxdag_mpi)
   if(TARGET ${module})
     install(TARGETS ${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/voxdag COMPONENT program)
   endif()

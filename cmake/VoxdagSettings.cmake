@@ -29,7 +29,13 @@ target_compile_options(voxdag_settings INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -ffp-contract=off -fno-math-errno -fno-trapping-math>)
 # Highway compiles hot loops for SSE2, SSE4, AVX2 and AVX-512; almost all processors with SSSE3 have SSE4, too.
-target_compile_definitions(voxdag_settings INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
+# SVE's vectors have no known length, so there are no arrays of them: NEON stands for all of ARM.
+set(disabled_targets HWY_SSSE3)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+  set(disabled_targets "(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
+  target_compile_options(voxdag_settings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>)
+endif()
+target_compile_definitions(voxdag_settings INTERFACE "HWY_DISABLED_TARGETS=${disabled_targets}")
 if(VOXDAG_WERROR)
   target_compile_options(voxdag_settings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
 endif()

@@ -15,6 +15,7 @@ voxdag_packages=(
 voxdag_test_packages=(
   libgtest-dev zstd python3-matplotlib
   pybind11-dev python3-dev python3-numpy python3-pytest  # the Python module
+  libtiff-dev libgdcm-dev  # stacks of TIFF, and DICOM
   libopenmpi-dev openmpi-bin  # several processes under mpirun
   doxygen  # the reference of the public headers
   clang-format
@@ -34,7 +35,7 @@ voxdag_extended_packages=(
 voxdag_wasm_packages=(emscripten googletest clang-16 lld-16 llvm-16)
 
 # scripts/release.sh makes the files of a release with these.
-voxdag_release_packages=(libopenvdb-dev libnanovdb-dev libboost-dev pybind11-dev python3-dev python3-numpy
+voxdag_release_packages=(libopenvdb-dev libnanovdb-dev libboost-dev libtiff-dev libgdcm-dev pybind11-dev python3-dev python3-numpy
   python3-wheel patchelf dpkg-dev file)
 
 # cmake/arm64.cmake cross-compiles with these, and QEMU runs the programs.

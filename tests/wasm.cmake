@@ -27,7 +27,7 @@ target_link_libraries(wasm_tests PRIVATE voxdag_settings voxdag_formats voxdag_e
 target_link_options(wasm_tests PRIVATE -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sNODERAWFS=1 -sENVIRONMENT=node -sEXIT_RUNTIME=1)
 target_compile_definitions(wasm_tests PRIVATE FMT_HEADER_ONLY
   VOXDAG_EXPECTATIONS="${CMAKE_CURRENT_SOURCE_DIR}/formats/readers/pathological_expectations.txt"
-  VOXDAG_HAS_OPENVDB=0 VOXDAG_HAS_VDB_EXPORT=0)
+  VOXDAG_HAS_OPENVDB=0 VOXDAG_HAS_VDB_EXPORT=0 VOXDAG_HAS_TIFF=0 VOXDAG_HAS_DICOM=0)
 # Ask for a second thread, a pipe, a full disk, or pages that an array gives back.
 set(left_out ThreadPool.SeveralThreads* ValueEncoder.TheOrderOfRanges* EncodeNormalBlock.EarlierBlocks*
   EditableDag.KeepsSnapshots* ReadMesh.WhatIsNoFile* ExportGrids.*RefusePipes Npy.ReadsAPipe VdagFile.OtherThings*

@@ -93,7 +93,7 @@ std::vector<std::string> files_of(const std::vector<std::string>& arguments) {
   std::vector<std::string> files;
   for (const std::string& argument : arguments) {
     const std::vector<std::string> of_argument =
-        !files_in(argument, {".png"}).empty()
+        is_slice_folder(argument)
             ? std::vector{argument}
             : expand_inputs({argument}, {".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb", ".ply",
                                          ".splat", ".las", ".pcd", ".npy"});
@@ -201,8 +201,9 @@ void add_import_command(const Command& program, Session& session) {
           "3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. Gaussian splats: .ply, .splat. "
           "Voxels: .vox, .binvox, .schem, .schematic, .litematic, .nbt (Minecraft), .bt, .ot "
           "(OctoMap), or .npy of N x 3 integers. Volumes: .npy of X x Y x Z, .nrrd, "
-          ".nhdr, .nii, .vdb, or a folder of .png slices. Each of them may also be compressed "
-          "(.gz, .zst). -: standard input")
+          ".nhdr, .nii, .tif, .dcm, .vdb, or a folder of .png or .tif slices or DICOM images. Each "
+          "of "
+          "them may also be compressed (.gz, .zst). -: standard input")
       .required();
   command.text(
       "-o,--output", arguments->output, "OUT",

@@ -9,6 +9,7 @@
 #include "voxdag/formats/imports/derived_source.hpp"
 #include "voxdag/formats/imports/file_placement.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
+#include "voxdag/formats/imports/volumes/slice_stack.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
 #include "voxdag/formats/input_file.hpp"
 
@@ -80,6 +81,18 @@ constexpr SourceFormat kSourceFormats[] = {
      [](const Path& path, const Options& options) {
        return open_nifti(path, options.threshold, options.labels);
      }},
+    {".tif", true,
+     [](const Path& path, const Options& options) {
+       return open_tiff(path, options.threshold, options.labels);
+     }},
+    {".tiff", true,
+     [](const Path& path, const Options& options) {
+       return open_tiff(path, options.threshold, options.labels);
+     }},
+    {".dcm", true,
+     [](const Path& path, const Options& options) {
+       return open_dicom(path, options.threshold, options.labels);
+     }},
     {".vdb", true,
      [](const Path& path, const Options& options) {
        return open_vdb(path, options.threshold, options.grid);
@@ -94,13 +107,28 @@ constexpr SourceFormat kSourceFormats[] = {
     {".ot", true, open_map},
 };
 
+/// Opens the files of a folder as slices.
+std::unique_ptr<VoxelSource> open_slices(const Path& folder, const Options& options) {
+  const auto has = [&](const std::string& ending) {
+    return !names_of_slices(folder, [&](const std::string& name) {
+              return lower_case(name).ends_with(ending);
+            }).empty();
+  };
+  const bool has_png = has(".png"), has_tiff = has(".tif") || has(".tiff");
+  if (has_png && has_tiff)
+    throw Error(folder.string(), "", "the folder has .png and .tif files: which are the slices?");
+  if (has_tiff) return open_tiff(folder, options.threshold, options.labels);
+  // Files of DICOM may have any names.
+  if (!has_png && has_dicom(folder)) return open_dicom(folder, options.threshold, options.labels);
+  return open_png_slices(folder, options.threshold,
+                         options.use_placement && has_numbered_slices(folder));
+}
+
 /// Opens `path`, whose format the end of `name` tells.
 std::unique_ptr<VoxelSource> open_by_name(const Path& path, std::string name,
                                           const Options& options) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    return open_png_slices(path, options.threshold,
-                           options.use_placement && has_numbered_slices(path));
+  if (std::filesystem::is_directory(path, ignored)) return open_slices(path, options);
   std::string endings;
   name = lower_case(name);
   for (const SourceFormat& format : kSourceFormats) {
@@ -114,9 +142,13 @@ std::unique_ptr<VoxelSource> open_by_name(const Path& path, std::string name,
     endings += std::string(endings.empty() ? "" : ", ") + format.ending;
   }
   if (name.ends_with(".laz")) throw Error(path.string(), "", kCompressedLas);
+  if (name.ends_with(".e57"))
+    throw Error(path.string(), "",
+                "is an E57 file, which is not read: CloudCompare and PDAL save it as .ply");
   if (path != name && name.find('.') == name.npos)
     throw Error(path.string(), "", "has no ending that tells its format: --format does");
-  throw Error(path.string(), "", "is none of " + endings + ", or a folder of .png files");
+  throw Error(path.string(), "",
+              "is none of " + endings + ", or a folder of .png, .tif or DICOM files");
 }
 
 /// The source of an unpacked file. Errors name the file that was given.
@@ -157,6 +189,17 @@ bool is_voxel_source(const Path& name) {
   const std::string unpacked = lower_case(unpacked_name(name).string());
   return std::any_of(std::begin(kSourceFormats), std::end(kSourceFormats),
                      [&](const SourceFormat& format) { return unpacked.ends_with(format.ending); });
+}
+
+bool is_slice_folder(const Path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(path, ignored)) return false;
+  const auto is_slice = [&](const std::string& name) {
+    const std::string lower = lower_case(name);
+    return lower.ends_with(".png") || lower.ends_with(".tif") || lower.ends_with(".tiff") ||
+           is_dicom(path / name);
+  };
+  return !names_of_slices(path, is_slice).empty();
 }
 
 std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& options) {

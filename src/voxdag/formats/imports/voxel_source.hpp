@@ -99,7 +99,11 @@ struct VoxelSourceOptions {
 /// points or a mesh.
 bool is_voxel_source(const std::filesystem::path& name);
 
-/// Opens a file by the end of its name, or a folder of PNG files. Files that gzip or Zstandard have
+/// Returns whether the path is a folder that open_voxel_source() reads as one volume: of slices of
+/// PNG or TIFF, or of images of DICOM.
+bool is_slice_folder(const std::filesystem::path& path);
+
+/// Opens a file by the end of its name, or a folder of slices. Files that gzip or Zstandard have
 /// compressed and pipes are unpacked first (InputFile). Throws Error for formats that are
 /// not known, for options that the format does not have, and for labels that the file does not
 /// have.

@@ -1,15 +1,12 @@
 #include <algorithm>
-#include <charconv>
-#include <limits>
 #include <string>
-#include <system_error>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/lower_case.hpp"
-#include "voxdag/core/printable.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/volumes/dense_volume.hpp"
+#include "voxdag/formats/imports/volumes/slice_stack.hpp"
 #include "voxdag/formats/imports/volumes/value_test.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
 #include "voxdag/image/image_limits.hpp"
@@ -18,76 +15,16 @@
 namespace voxdag {
 namespace {
 
-bool is_decimal(char c) { return c >= '0' && c <= '9'; }
-
-/// Cuts the digits off the front of a name. Returns them without leading zeros.
-std::string_view cut_number(std::string_view& name) {
-  std::size_t end = 0;
-  while (end < name.size() && is_decimal(name[end])) ++end;
-  std::string_view digits = name.substr(0, end);
-  name.remove_prefix(end);
-  while (digits.starts_with('0')) digits.remove_prefix(1);
-  return digits;
-}
-
-std::vector<std::string> names_of_slices(const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (lower_case(name).ends_with(".png") && name[0] != '.') names.push_back(name);
-  }
-  if (error) throw Error(folder.string(), "", "cannot read the folder: " + error.message());
-  if (names.empty()) throw Error(folder.string(), "", "the folder has no .png files");
-  std::sort(names.begin(), names.end(), is_before_by_numbers);
-  return names;
-}
-
-/// Returns the last number in a name; nothing if it has none of at most 18 digits.
-std::optional<std::int64_t> last_number(std::string_view name) {
-  const std::size_t end = name.find_last_of("0123456789");
-  if (end == name.npos) return std::nullopt;
-  std::size_t begin = end;
-  while (begin > 0 && is_decimal(name[begin - 1])) --begin;
-  std::int64_t number = 0;
-  const auto [next, error] = std::from_chars(name.data() + begin, name.data() + end + 1, number);
-  if (error != std::errc()) return std::nullopt;
-  return number;
-}
-
-/// Returns a warning if numbers are missing between those of the names; empty if none are.
-std::string missing_slices(const std::vector<std::string>& names) {
-  std::int64_t least = std::numeric_limits<std::int64_t>::max(), missing = 0;
-  std::size_t first = 0;
-  for (const bool is_counting : {false, true})
-    for (std::size_t i = 1; i < names.size(); ++i) {
-      const auto a = last_number(names[i - 1]), b = last_number(names[i]);
-      if (!a || !b || *b <= *a) return {};
-      const std::int64_t step = *b - *a;
-      if (!is_counting) least = std::min(least, step);
-      if (!is_counting || step == least) continue;
-      if (missing == 0) first = i;
-      missing += step / least - 1;
-    }
-  // Two slices have one step, which is the least one: a step of 1 is expected of them.
-  if (names.size() == 2 && least > 1) {
-    missing = least - 1;
-    first = 1;
-  }
-  if (missing == 0) return {};
-  return std::to_string(missing) + (missing == 1 ? " slice is" : " slices are") +
-         " missing, the first between " + in_quotes(names[first - 1]) + " and " +
-         in_quotes(names[first]) + "; the others lie next to each other";
-}
+bool is_png(const std::string& name) { return lower_case(name).ends_with(".png"); }
 
 class PngSlices : public VoxelSource {
  public:
   PngSlices(std::filesystem::path folder, std::optional<double> threshold, bool numbered)
       : folder_(std::move(folder)),
-        names_(names_of_slices(folder_)),
+        names_(names_of_slices(folder_, is_png)),
         numbered_(numbered),
         threshold_(threshold) {
+    if (names_.empty()) throw Error(folder_.string(), "", "the folder has no .png files");
     const DecodedImage first = decode(names_[0]);
     width_ = first.width();
     height_ = first.height();
@@ -199,23 +136,6 @@ class PngSlices : public VoxelSource {
 };
 
 }  // namespace
-
-bool is_before_by_numbers(std::string_view a, std::string_view b) {
-  const std::string_view whole_a = a, whole_b = b;
-  while (!a.empty() && !b.empty()) {
-    if (is_decimal(a[0]) && is_decimal(b[0])) {
-      const std::string_view number_a = cut_number(a), number_b = cut_number(b);
-      if (number_a.size() != number_b.size()) return number_a.size() < number_b.size();
-      if (number_a != number_b) return number_a < number_b;
-    } else {
-      if (a[0] != b[0]) return a.substr(0, 1) < b.substr(0, 1);  // As unsigned characters.
-      a.remove_prefix(1);
-      b.remove_prefix(1);
-    }
-  }
-  if (a.empty() != b.empty()) return a.empty();
-  return whole_a < whole_b;  // They differ in leading zeros only.
-}
 
 std::unique_ptr<VoxelSource> open_png_slices(const std::filesystem::path& folder,
                                              std::optional<double> threshold, bool numbered) {

@@ -51,6 +51,30 @@ std::unique_ptr<VoxelSource> open_png_slices(const std::filesystem::path& folder
                                              std::optional<double> threshold,
                                              bool numbered = false);
 
+/// Opens a volume of TIFF: the pages of a file, or the files of a folder whose names end in .tif or
+/// .tiff, sorted like those of open_png_slices(). Page k has the voxels (x, y, k). Pages of one
+/// channel have integers of 1 to 32 bits or real numbers of 16 to 64; the least value of "white is
+/// zero" counts as the greatest. Pages of colours have 8 bits a channel, and set voxels like NRRD.
+/// Smaller copies of pages are left out. ImageJ and OME name the sides of voxels; without them,
+/// they are 1. Lengths are in the unit of the file. Throws Error for stacks with several channels
+/// or frames, and for pages that differ.
+///
+/// libtiff reads the file, in a module of its own, voxdag_tiff.so.
+std::unique_ptr<VoxelSource> open_tiff(const std::filesystem::path& path,
+                                       std::optional<double> threshold,
+                                       const LabelRequest& labels = {});
+
+/// Opens a series of DICOM: the images in a folder, or one file with one frame or several. The
+/// images are placed by their position and orientation, in millimetres: x points to the patient's
+/// left, y to the back, z to the head. A threshold is compared with the scaled values (Hounsfield
+/// units of CT), which without labels must be given for CT. Throws Error if images differ in size,
+/// type or series, if two have one place, if one is missing, or for colours.
+///
+/// GDCM reads the files, in a module of its own, voxdag_dicom.so, and there in a ConfinedChild.
+std::unique_ptr<VoxelSource> open_dicom(const std::filesystem::path& path,
+                                        std::optional<double> threshold,
+                                        const LabelRequest& labels = {});
+
 /// Returns whether the name `a` comes before `b` if numbers in them are compared by value.
 bool is_before_by_numbers(std::string_view a, std::string_view b);
 
