@@ -12,8 +12,9 @@
 
 namespace voxdag::python {
 
-/// An argument that NumPy makes an array of: an array of any type, or lists of lists. Raises
-/// TypeError if values are masked.
+/// An argument that NumPy makes an array of: an array of any type, lists of lists, or a tensor of
+/// another library in the processor's memory, which NumPy takes without a copy (__array_interface__
+/// or DLPack). Raises what NumPy raises for tensors elsewhere, and TypeError if values are masked.
 class ArrayLike : public pybind11::array {
  public:
   ArrayLike() = default;
@@ -89,7 +90,14 @@ struct type_caster<voxdag::python::ArrayLike> {
     // array::ensure() drops masks.
     if (module_::import("numpy.ma").attr("is_masked")(source).cast<bool>())
       throw type_error("an array has masked values: replace them first, as array.filled(0) does");
-    array made = array::ensure(source);
+    // NumPy makes arrays of all that has a buffer, __array__ or __array_interface__, but not of
+    // what has DLPack alone.
+    const bool has_dlpack_alone = !isinstance<array>(source) && hasattr(source, "__dlpack__") &&
+                                  !hasattr(source, "__array__") &&
+                                  !hasattr(source, "__array_interface__");
+    array made = has_dlpack_alone
+                     ? module_::import("numpy").attr("from_dlpack")(source).cast<array>()
+                     : array::ensure(source);
     if (!made) return false;
     value = voxdag::python::ArrayLike(std::move(made));
     return true;

@@ -197,3 +197,34 @@ def test_rays_that_are_none_are_refused(arguments, message):
     origins, ends, hits = arguments
     with pytest.raises(ValueError, match=message):
         voxdag.carve_rays(origins, ends, pitch=1.0, hits=hits)
+
+
+class OnlyDlpack:
+    """A tensor of a library that NumPy does not know."""
+
+    def __init__(self, array, device=(1, 0)):
+        self.array, self.device = array, device
+
+    def __dlpack__(self, **_):
+        return self.array.__dlpack__()
+
+    def __dlpack_device__(self):
+        return self.device
+
+
+class OnlyInterface:
+    def __init__(self, array):
+        self.array, self.__array_interface__ = array, array.__array_interface__
+
+
+@pytest.mark.parametrize("tensor", [OnlyDlpack, OnlyInterface])
+def test_tensors_of_other_libraries_are_arrays(tensor):
+    coords = np.array([[1, 2, 3], [4, 5, 6]], np.int32)
+    dag = voxdag.from_coords(tensor(coords), colors=tensor(np.full((2, 3), 9, np.uint8)))
+    assert dag.coords().tolist() == coords.tolist()
+    assert dag.contains(tensor(np.array([[1.5, 2.5, 3.5], [0, 0, 0]]))).tolist() == [True, False]
+
+
+def test_arrays_go_to_other_libraries_without_a_copy():
+    coords = voxdag.from_coords([[1, 2, 3]]).coords()
+    assert np.shares_memory(np.from_dlpack(OnlyDlpack(coords)), coords)
