@@ -96,7 +96,7 @@ std::vector<std::string> files_of(const std::vector<std::string>& arguments) {
         is_slice_folder(argument)
             ? std::vector{argument}
             : expand_inputs({argument}, {".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb", ".ply",
-                                         ".splat", ".las", ".pcd", ".npy"});
+                                         ".splat", ".spz", ".sog", ".las", ".pcd", ".npy"});
     files.insert(files.end(), of_argument.begin(), of_argument.end());
   }
   return files;
@@ -198,7 +198,8 @@ void add_import_command(const Command& program, Session& session) {
       .repeated(
           "file", arguments->files, [](const std::string& text) { return text; }, "FILE...",
           "One file, several, a folder of them or a pattern. Points: .ply, .las, .pcd, .npy of N x "
-          "3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. Gaussian splats: .ply, .splat. "
+          "3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. Gaussian splats: .ply, .splat, .spz, "
+          ".sog. "
           "Voxels: .vox, .binvox, .schem, .schematic, .litematic, .nbt (Minecraft), .bt, .ot "
           "(OctoMap), or .npy of N x 3 integers. Volumes: .npy of X x Y x Z, .nrrd, "
           ".nhdr, .nii, .tif, .dcm, .vdb, or a folder of .png or .tif slices or DICOM images. Each "

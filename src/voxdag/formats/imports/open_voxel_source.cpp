@@ -56,6 +56,14 @@ constexpr SourceFormat kSourceFormats[] = {
      [](const Path& path, const Options& options) {
        return open_splat_file(path, options.splats_are_points);
      }},
+    {".spz", false,
+     [](const Path& path, const Options& options) {
+       return open_spz(path, options.splats_are_points);
+     }},
+    {".sog", false,
+     [](const Path& path, const Options& options) {
+       return open_sog(path, options.splats_are_points, options.work);
+     }},
     {".las", false,
      [](const Path& path, const Options& options) {
        return open_las_points(path, options.labels);

@@ -1,7 +1,6 @@
 /// Reads the compressed PLY files of PlayCanvas: Gaussian splats of 16 bytes.
 ///
 /// Source: PlayCanvas, splat-transform, "compressed PLY".
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -11,6 +10,7 @@
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/load_value.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
+#include "voxdag/formats/imports/points/splat_source.hpp"
 #include "voxdag/formats/readers/ply/ply_header.hpp"
 #include "voxdag/formats/readers/ply/ply_layout.hpp"
 
@@ -44,29 +44,19 @@ Vec3d three_fractions(std::uint32_t word) {
 
 /// Returns the quaternion w, x, y, z of which the greatest part is left out.
 std::array<float, 4> unpack_rotation(std::uint32_t word) {
-  const double parts[] = {fraction_of(word, 20, 10), fraction_of(word, 10, 10),
-                          fraction_of(word, 0, 10)};
-  std::array<float, 4> rotation{};
-  double left = 1;
-  std::size_t next = 0;
-  const std::size_t greatest = word >> 30;
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (i == greatest) continue;
-    const double part = (parts[next++] - 0.5) * std::sqrt(2.0);
-    rotation[i] = static_cast<float>(part);
-    left -= part * part;
-  }
-  rotation[greatest] = static_cast<float>(std::sqrt(std::max(left, 0.0)));
-  return rotation;
+  const auto part = [&](int shift) {
+    return (fraction_of(word, shift, 10) - 0.5) * std::sqrt(2.0);
+  };
+  return rotation_of_three({part(20), part(10), part(0)}, word >> 30);
 }
 
-class PackedPly final : public VoxelSource {
+class PackedPly final : public SplatSource {
  public:
   PackedPly(const std::filesystem::path& path, bool splats_are_points)
-      : file_(path, MappedFile::Access::kSequential),
+      : SplatSource(splats_are_points),
+        file_(path, MappedFile::Access::kSequential),
         source_{file_.text(), path.string(), {}, &file_, {}},
-        header_(parse_ply_header(source_, PlyUse::kPoints)),
-        has_splats_(!splats_are_points) {
+        header_(parse_ply_header(source_, PlyUse::kPoints)) {
     if (vertex().find({"packed_position"}) < 0) return;
     if (header_.format != PlyFormat::kLittleEndian)
       fail("compressed splats must have the format binary_little_endian");
@@ -99,10 +89,6 @@ class PackedPly final : public VoxelSource {
 
   bool is_packed() const { return splats_.first != nullptr; }
 
-  bool has_points() const override { return true; }
-  bool has_colors() const override { return true; }
-  bool has_splats() const override { return has_splats_; }
-  CoordinateError coordinate_error() const override { return kFloatCoordinates; }
   void visit_all(const VisitBatch& visit) const override {
     BatchedVoxels splats(visit);
     PassedPages pages(file_, splats_.first);
@@ -149,7 +135,7 @@ class PackedPly final : public VoxelSource {
       return splats_.load<std::uint32_t>(i, property);
     };
     const std::uint32_t packed_color = word(3);
-    if (has_splats_) {
+    if (has_splats()) {
       const Vec3d log_scale = between(chunks_, i, 6, three_fractions(word(2)));
       Splat splat =
           splat_of_logarithms(unpack_rotation(word(1)),
@@ -169,7 +155,6 @@ class PackedPly final : public VoxelSource {
   MappedFile file_;
   MeshSource source_;
   PlyHeader header_;
-  bool has_splats_;
   PackedRows chunks_, colors_, splats_;  ///< Colours only if chunks have some.
 };
 

@@ -56,6 +56,17 @@ std::unique_ptr<VoxelSource> open_packed_ply(const std::filesystem::path& path,
 std::unique_ptr<VoxelSource> open_splat_file(const std::filesystem::path& path,
                                              bool splats_are_points = false);
 
+/// Opens an .spz file (Niantic), versions 1 to 3, which gzip has unpacked. Ignores the spherical
+/// harmonics above the first. Throws Error for other versions, and if the file is short.
+std::unique_ptr<VoxelSource> open_spz(const std::filesystem::path& path,
+                                      bool splats_are_points = false);
+
+/// Opens a .sog file (PlayCanvas), version 2: a ZIP archive of meta.json and images of WebP, which
+/// it holds in memory, 12 to 20 bytes a splat. Ignores the spherical harmonics above the first.
+/// Throws Error for archives that are damaged, and OverMemory.
+std::unique_ptr<VoxelSource> open_sog(const std::filesystem::path& path,
+                                      bool splats_are_points = false, const Work& work = {});
+
 /// Opens the points of a LAS file, versions 1.0 to 1.5, point formats 0 to 10. Skips points that
 /// are flagged as withheld, which the specification calls deleted; reads synthetic points and all
 /// others. Skips variable length records, and reads coordinates as they are, without a reference

@@ -7,25 +7,22 @@
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/load_value.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
+#include "voxdag/formats/imports/points/splat_source.hpp"
 
 namespace voxdag {
 namespace {
 
 constexpr std::size_t kSplatBytes = 32;
 
-class SplatFile final : public VoxelSource {
+class SplatFile final : public SplatSource {
  public:
   SplatFile(const std::filesystem::path& path, bool splats_are_points)
-      : file_(path, MappedFile::Access::kSequential), has_splats_(!splats_are_points) {
+      : SplatSource(splats_are_points), file_(path, MappedFile::Access::kSequential) {
     if (file_.text().size() % kSplatBytes != 0)
       throw Error(path.string(), ErrorPlace::byte(file_.text().size()),
                   "the file ends inside a record of 32 bytes");
   }
 
-  bool has_points() const override { return true; }
-  bool has_colors() const override { return true; }
-  bool has_splats() const override { return has_splats_; }
-  CoordinateError coordinate_error() const override { return kFloatCoordinates; }
   void visit_all(const VisitBatch& visit) const override {
     BatchedVoxels splats(visit);
     const std::string_view bytes = file_.text();
@@ -34,7 +31,7 @@ class SplatFile final : public VoxelSource {
       const char* const record = bytes.data() + at;
       const auto number = [&](int i) { return load_value<float>(record + 4 * i); };
       const auto byte = [&](int i) { return load_value<std::uint8_t>(record + 24 + i); };
-      if (has_splats_) {
+      if (has_splats()) {
         Splat splat{{}, {number(3), number(4), number(5)}, extinction_of(byte(3) / 255.0)};
         for (int i = 0; i < 4; ++i)
           splat.rotation[static_cast<std::size_t>(i)] = static_cast<float>(byte(4 + i) - 128);
@@ -48,7 +45,6 @@ class SplatFile final : public VoxelSource {
 
  private:
   MappedFile file_;
-  bool has_splats_;
 };
 
 }  // namespace
