@@ -27,9 +27,9 @@ scripts/same_bytes.py build/release/apps/voxdag/voxdag \
   "$(command -v qemu-aarch64-static) -L build/arm64-system build/arm64/apps/voxdag/voxdag"
 [ $tests = yes ] || exit 0
 
-# QEMU is 10 to 20 times slower than a processor, takes memory of its own, and confines no processes. So these are
-# left out: tests of the memory of the process, of children that can only compute, and the longest ones.
+# QEMU is 10 to 20 times slower than a processor, takes memory of its own, and has no seccomp. So these are left out:
+# tests of the memory of the process, of children that can only compute, of those killed in a system call, and the longest ones.
 cmake --build --preset arm64 --target library_tests
 ctest --preset arm64 -j "$(nproc)" -LE extended \
   -R '^(core|io|parallel|stored|svdag|esvo|attributes|compact|wire|algebra|query|voxels|edit|voxelize|solid|dag|encode|build|trace|file|model|report)\.' \
-  -E '\.(ConfinedChild|ProcessMemory|MemoryBudget)$'
+  -E '\.(ConfinedChild|AtomicFile|ProcessMemory|MemoryBudget)$'

@@ -49,6 +49,10 @@ TEST_F(SplatCommands, ARoomBecomesACollisionFile) {
   EXPECT_NE(import.out.find("splats        opacity 0.3, scales 0.05 to 1"), std::string::npos)
       << import.out;
   EXPECT_EQ(run_voxdag({"verify", path("room.vdag")}).status, 0);
+  // The DAG of another output has no name, and no folder for files that are sorted.
+  const ProcessResult array = run_voxdag({"import", path("room.ply"), "--voxel-size", "0.4",
+                                          "--max-scale", "1", "-o", path("room.npy")});
+  EXPECT_EQ(array.status, 0) << array.err;
   ASSERT_EQ(run_voxdag({"carve", path("room.vdag"), "--from", "4,2,4", "--capsule", "1,0.2",
                         "--solid", "--drop-attributes", "-o", path("solid.vdag")})
                 .status,

@@ -57,7 +57,9 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
   options.labels = options.drops_labels ? arguments.drop : arguments.keep;
   const LabelRequest labels =
       arguments.has_labels ? LabelRequest(arguments.label_field) : std::nullopt;
-  options.folder = std::filesystem::path(arguments.output).parent_path();
+  options.folder = arguments.output == session.scratch
+                       ? std::filesystem::temp_directory_path()
+                       : std::filesystem::path(arguments.output).parent_path();
   if (options.folder.empty()) options.folder = ".";
   std::vector<std::unique_ptr<VoxelSource>> sources;
   for (const std::string& file : arguments.files)

@@ -23,8 +23,15 @@
 #include "voxdag/core/io/nameless_file.hpp"
 #include "voxdag/core/io/unfinished_files.hpp"
 
+#ifndef __NR_rename  // 64-bit ARM
+#define __NR_rename __NR_renameat
+#endif
+
 namespace voxdag {
 namespace {
+
+/// The system call by which rename() renames.
+constexpr unsigned kRename = __NR_rename;
 
 TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   const TempDir dir;
@@ -140,14 +147,13 @@ std::filesystem::path leftover_of_a_process_killed_in(const TempDir& dir, unsign
 }
 
 TEST(AtomicFile, RemovesTheLeftoverOfAKilledProcessForTheSameOutput) {
-  for (const unsigned call :
-       {static_cast<unsigned>(__NR_rename), static_cast<unsigned>(__NR_write)})
+  for (const unsigned call : {kRename, static_cast<unsigned>(__NR_write)})
     for (const bool only_named : {false, true}) {
       const TempDir dir;
       write_text(dir / "out", "old");
       const auto left = leftover_of_a_process_killed_in(dir, call, only_named);
       // A process that is killed while it writes a nameless file leaves nothing.
-      const bool leaves_one = only_named || call == __NR_rename || !has_nameless_files(dir);
+      const bool leaves_one = only_named || call == kRename || !has_nameless_files(dir);
       EXPECT_EQ(!left.empty(), leaves_one);
       EXPECT_EQ(dir.count(), leaves_one ? 2 : 1);
       EXPECT_EQ(read_text(dir / "out"), "old");
@@ -162,7 +168,7 @@ TEST(AtomicFile, RemovesTheLeftoverOfAKilledProcessForTheSameOutput) {
 TEST(AtomicFile, RemovesLeftoversOfDeadProcessesOnly) {
   const TempDir dir;
   write_text(dir / "out", "old");
-  const auto left = leftover_of_a_process_killed_in(dir, __NR_rename, true);
+  const auto left = leftover_of_a_process_killed_in(dir, kRename, true);
   ASSERT_FALSE(left.empty());
   const std::string dead = left.filename().string().substr(0, left.filename().string().rfind('-'));
   write_text(dir / ("out.voxdag-" + std::to_string(getpid()) + "-7"), "of a running process");

@@ -1,5 +1,6 @@
 // Splats of .spz and .sog, against values computed from the definitions of the formats.
 #include <webp/encode.h>
+#include <zstd.h>
 
 #include <cmath>
 #include <random>
@@ -69,7 +70,7 @@ class SplatFiles : public VolumeTest {
 
 /// Returns a file and its splats.
 TEST_F(SplatFiles, SpzIsRead) {
-  for (const std::uint32_t version : {2u, 3u})
+  for (const std::uint32_t version : {2u, 3u, 4u})
     for (const std::uint32_t degree : {0u, 3u}) {
       constexpr std::uint32_t kCount = 50, kBits = 12;
       std::string places, alphas, colors, scales, rotations;
@@ -92,7 +93,7 @@ TEST_F(SplatFiles, SpzIsRead) {
           splat.log_scale[c] = scale / 16.0 - 10;
         }
         std::array<double, 4> xyzw{};
-        if (version == 3) {
+        if (version >= 3) {
           const std::uint32_t greatest = random(4);
           std::uint32_t word = greatest << 30;
           std::vector<double> parts;
@@ -115,22 +116,40 @@ TEST_F(SplatFiles, SpzIsRead) {
         splat.rotation = {xyzw[3], xyzw[0], xyzw[1], xyzw[2]};
         splats.push_back(splat);
       }
+      const std::string harmonics(kCount * (degree == 3 ? 45 : 0), 'h');
       std::string bytes = "NGSP";
       put(bytes, version, 4);
       put(bytes, kCount, 4);
-      put(bytes, degree | kBits << 8, 4);
-      bytes += places + alphas + colors + scales + rotations +
-               std::string(kCount * (degree == 3 ? 45 : 0), 'h');
+      put(bytes, degree | kBits << 8, 3);
+      if (version < 4) {
+        bytes += '\0' + places + alphas + colors + scales + rotations + harmonics;
+      } else {
+        std::string table, streams;
+        for (const std::string& array : {places, alphas, colors, scales, rotations, harmonics}) {
+          if (array.empty()) continue;
+          std::string packed(ZSTD_compressBound(array.size()), '\0');
+          packed.resize(ZSTD_compress(packed.data(), packed.size(), array.data(), array.size(), 3));
+          put(table, packed.size(), 8);
+          put(table, array.size(), 8);
+          streams += packed;
+        }
+        put(bytes, table.size() / 16, 1);
+        put(bytes, 32, 4);
+        bytes += std::string(12, '\0') + table;
+        bytes += streams;
+      }
       write("s.spz", bytes);
       expect("s.spz", splats);
       const auto error = [&](const std::string& of) {
         write("s.spz", of);
         return error_of([&] { open("s.spz"); });
       };
-      for (std::size_t size = 0; size < bytes.size(); ++size)
+      // Nothing reads the harmonics of version 4.
+      const std::size_t least = version < 4 || degree == 0 ? bytes.size() : 32;
+      for (std::size_t size = 0; size < least; ++size)
         EXPECT_NE(error(bytes.substr(0, size)), "no error") << size;
-      bytes[4] = 4;
-      EXPECT_TRUE(has(error(bytes), "version 4"));
+      bytes[4] = 5;
+      EXPECT_TRUE(has(error(bytes), "version 5"));
     }
 }
 

@@ -58,7 +58,7 @@ constexpr SourceFormat kSourceFormats[] = {
      }},
     {".spz", false,
      [](const Path& path, const Options& options) {
-       return open_spz(path, options.splats_are_points);
+       return open_spz(path, options.splats_are_points, options.work);
      }},
     {".sog", false,
      [](const Path& path, const Options& options) {

@@ -56,10 +56,11 @@ std::unique_ptr<VoxelSource> open_packed_ply(const std::filesystem::path& path,
 std::unique_ptr<VoxelSource> open_splat_file(const std::filesystem::path& path,
                                              bool splats_are_points = false);
 
-/// Opens an .spz file (Niantic), versions 1 to 3, which gzip has unpacked. Ignores the spherical
-/// harmonics above the first. Throws Error for other versions, and if the file is short.
+/// Opens an .spz file (Niantic), versions 1 to 4; those up to 3 must be unpacked from gzip. Holds
+/// the splats of version 4 in memory, 20 bytes each. Ignores the spherical harmonics above the
+/// first. Throws Error for other versions and damaged files, and OverMemory.
 std::unique_ptr<VoxelSource> open_spz(const std::filesystem::path& path,
-                                      bool splats_are_points = false);
+                                      bool splats_are_points = false, const Work& work = {});
 
 /// Opens a .sog file (PlayCanvas), version 2: a ZIP archive of meta.json and images of WebP, which
 /// it holds in memory, 12 to 20 bytes a splat. Ignores the spherical harmonics above the first.
