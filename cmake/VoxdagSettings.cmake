@@ -48,11 +48,12 @@ set(VOXDAG_PIC ON)
 if(EMSCRIPTEN)
   set(VOXDAG_PIC OFF)
   string(REPLACE "-O3" "-O2" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
-  # WebAssembly's own exceptions and vectors: Chromium 95, Firefox 100, Safari 16.4, Node 18 and later.
-  add_compile_options(-fwasm-exceptions -msimd128)
+  # WebAssembly's own exceptions and vectors, and shared memory: Chromium 95, Firefox 100, Safari 16.4, Node 18 and later.
+  add_compile_options(-fwasm-exceptions -msimd128 -pthread)
   foreach(language C CXX)
     string(APPEND CMAKE_${language}_FLAGS " --em-config ${PROJECT_SOURCE_DIR}/cmake/wasm/emscripten.config -Wno-version-check")
   endforeach()
   add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include ${PROJECT_SOURCE_DIR}/cmake/wasm/libcxx14.hpp>")
-  add_link_options(-fwasm-exceptions)
+  # All threads have the stack of the first one. JavaScript looks again where memory is after it has grown; it has little to do.
+  add_link_options(-fwasm-exceptions -pthread -sDEFAULT_PTHREAD_STACK_SIZE=5MB -Wno-pthreads-mem-growth)
 endif()

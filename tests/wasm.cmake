@@ -24,15 +24,17 @@ set_target_properties(wasm_tests PROPERTIES UNITY_BUILD_MODE GROUP RULE_LAUNCH_L
 target_include_directories(wasm_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 target_link_libraries(wasm_tests PRIVATE voxdag_settings voxdag_formats voxdag_edit gtest nlohmann_json::nlohmann_json
   minizip::minizip zstd::zstd draco::draco meshoptimizer::meshoptimizer PNG::PNG JPEG::JPEG WebP::webp)
-target_link_options(wasm_tests PRIVATE -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sNODERAWFS=1 -sENVIRONMENT=node -sEXIT_RUNTIME=1)
+target_link_options(wasm_tests PRIVATE -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sNODERAWFS=1 -sENVIRONMENT=node -sEXIT_RUNTIME=1
+  "-sPTHREAD_POOL_SIZE=require('os').cpus().length+8")  # some tests start threads themselves
 target_compile_definitions(wasm_tests PRIVATE FMT_HEADER_ONLY
   VOXDAG_EXPECTATIONS="${CMAKE_CURRENT_SOURCE_DIR}/formats/readers/pathological_expectations.txt"
   VOXDAG_HAS_OPENVDB=0 VOXDAG_HAS_VDB_EXPORT=0 VOXDAG_HAS_TIFF=0 VOXDAG_HAS_DICOM=0)
-# Ask for a second thread, a pipe, a full disk, or pages that an array gives back.
-set(left_out ThreadPool.SeveralThreads* ValueEncoder.TheOrderOfRanges* EncodeNormalBlock.EarlierBlocks*
-  EditableDag.KeepsSnapshots* ReadMesh.WhatIsNoFile* ExportGrids.*RefusePipes Npy.ReadsAPipe VdagFile.OtherThings*
+# Ask for a pipe, a full disk, or pages that an array gives back.
+set(left_out ReadMesh.WhatIsNoFile* ExportGrids.*RefusePipes Npy.ReadsAPipe VdagFile.OtherThings*
   PageVector.CountsItsPages* */MappedMesh.AFullDisk* EsvoMemoryLimit.AnyLimit*)
 list(JOIN left_out : left_out)
 # With fetch(), the module would load its file from the web.
 add_test(NAME wasm.library COMMAND ${CMAKE_CROSSCOMPILING_EMULATOR} -e "delete globalThis.fetch; require(process.argv[1])" $<TARGET_FILE:wasm_tests> --gtest_brief=1 --gtest_filter=-${left_out})
 set_tests_properties(wasm.library PROPERTIES TIMEOUT 1200)
+add_test(NAME wasm.threads COMMAND ${CMAKE_CROSSCOMPILING_EMULATOR} --test ${CMAKE_CURRENT_SOURCE_DIR}/wasm_threads.test.mjs)
+set_tests_properties(wasm.threads PROPERTIES TIMEOUT 600 ENVIRONMENT "VOXDAG_MODULE=$<TARGET_FILE:voxdag_wasm>")

@@ -1,4 +1,5 @@
 /** The entry for Node: workers are threads, and there is no picture. */
+import os from 'node:os';
 import { Worker } from 'node:worker_threads';
 import { provide } from './page/file/host.js';
 import { text } from './texts.js';
@@ -40,7 +41,7 @@ class Thread {
   }
 }
 
-provide({ text, makeWorker: (script) => new Thread(script) });
+provide({ text, makeWorker: (script) => new Thread(script), threads: () => os.cpus().length });
 
 /** Pages that a server renders import it, too. @returns {never} */
 export function createViewer() {

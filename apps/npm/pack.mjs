@@ -9,7 +9,7 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 const HERE = path.dirname(fileURLToPath(import.meta.url));
 const SOURCES = ['index.js', 'node.js', 'build.js', 'ply.js', 'run.js', 'scene.js', 'texts.js', 'viewer.js'], OTHERS = ['index.d.ts', 'README.md', 'LICENCES.txt'];
 /** The page's files that become texts in modules. */
-const TEXTS = [/^gpu\/shaders\/.*\.glsl$/, /^file\/worker\/.*\.js$/, /^build\/(voxdag\.js|voxdag\.wasm\.gz|program_worker\.js)$/];
+const TEXTS = [/^gpu\/shaders\/.*\.glsl$/, /^file\/worker\/.*\.js$/, /^build\/(voxdag\.js|voxdag\.worker\.js|voxdag\.wasm\.gz|program_worker\.js)$/];
 
 /** Returns the files below a folder. @param {string} folder @returns {string[]} */
 const filesIn = (folder, below = '') => fs.readdirSync(path.join(folder, below), { withFileTypes: true }).flatMap((entry) =>

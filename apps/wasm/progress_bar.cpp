@@ -3,6 +3,7 @@
 #include "cli/progress_bar.hpp"
 
 #include <emscripten.h>
+#include <emscripten/threading.h>
 
 #include <string>
 
@@ -17,7 +18,7 @@ constexpr std::chrono::milliseconds kReportInterval{50};
 void ProgressBar::enable(bool wanted) { enabled_ = wanted; }
 
 void ProgressBar::update(std::string_view stage, double fraction, std::uint64_t) {
-  if (!enabled_) return;
+  if (!enabled_ || !emscripten_is_main_runtime_thread()) return;  // Only its JavaScript has Module.
   const Clock::time_point now = Clock::now();
   if (stage == stage_ && now - last_draw_ < kReportInterval) return;
   stage_ = stage;

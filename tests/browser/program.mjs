@@ -81,14 +81,14 @@ export async function view(file, ...options) {
 
 /**
  * Serves a folder as a plain web server does, without ranges.
- * @param {string} site @returns {Promise<{url: string, close: () => void}>}
+ * @param {string} site @param {{[name: string]: string}} [headers]  Of each answer. @returns {Promise<{url: string, close: () => void}>}
  */
-export async function serveFolder(site) {
+export async function serveFolder(site, headers = {}) {
   const server = http.createServer((request, response) => {
     const name = path.join(site, new URL(request.url ?? '/', 'http://x').pathname.replace(/\/$/, '/index.html'));
     const kinds = { '.js': 'text/javascript', '.html': 'text/html', '.css': 'text/css', '.svg': 'image/svg+xml' };
     if (!fs.existsSync(name)) return response.writeHead(name.endsWith('favicon.ico') ? 204 : 404).end();
-    response.writeHead(200, { 'Content-Type': kinds[/** @type {'.js'} */ (path.extname(name))] ?? 'application/octet-stream' });
+    response.writeHead(200, { ...headers, 'Content-Type': kinds[/** @type {'.js'} */ (path.extname(name))] ?? 'application/octet-stream' });
     fs.createReadStream(name).pipe(response);
   });
   return { url: await listen(server), close: () => server.close() };

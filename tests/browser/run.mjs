@@ -19,7 +19,7 @@ function skip(why) {
 if (!fs.existsSync(path.join(here, 'node_modules'))) skip('no node_modules in tests/browser; run `npm ci` there');
 const [file, browser] = process.argv.slice(2);
 if (browser !== 'none' && !isInstalled(browser)) skip(`${browser} is not installed`);
-if (['build.test.mjs', 'npm.test.mjs'].includes(path.basename(file)) && !fs.existsSync(path.join(process.env.VOXDAG_PAGE ?? '', 'build/voxdag.js')))
+if (['build.test.mjs', 'npm.test.mjs', 'threads.test.mjs'].includes(path.basename(file)) && !fs.existsSync(path.join(process.env.VOXDAG_PAGE ?? '', 'build/voxdag.js')))
   skip('the page has no program for browsers; configure with -DVOXDAG_BROWSER_MODULE');
 
 // Firefox finds WebGL only on a display.

@@ -47,7 +47,7 @@ struct NumberSlots {
 
   /// Returns the index of the slot where a search begins.
   std::uint64_t first_of(std::uint32_t tag) const {
-    return static_cast<std::uint64_t>((static_cast<Uint128>(tag) * count) >> 32);
+    return tag * (count >> 32) + (tag * (count & 0xFFFFFFFFu) >> 32);
   }
   /// Returns the slot that a search tries after slot i.
   std::uint64_t next(std::uint64_t i) const { return i + 1 < count ? i + 1 : 0; }

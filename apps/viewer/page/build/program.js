@@ -1,6 +1,7 @@
 /**
- * Runs the voxdag command line in the page: build/voxdag.js and build/voxdag.wasm.gz, if the page has them. Each run has a
- * worker and an instance of its own: its memory goes when it ends, and a run that fails harms no other.
+ * Runs the voxdag command line in the page: build/voxdag.js, build/voxdag.worker.js and build/voxdag.wasm.gz, if the page has
+ * them. Each run has a worker and an instance of its own, and more workers for its threads: its memory goes when it ends, and a
+ * run that fails harms no other.
  */
 import { packedFile } from '../file/byte_source.js';
 import { host } from '../file/host.js';
@@ -8,24 +9,27 @@ import { loadText } from '../file/text_assets.js';
 
 /** @typedef {{name: string, data: Blob}} InputFile  The program sees it as /in/NAME. */
 /**
- * What a run has left: its exit status, its standard output, the lines of its standard error, the files in /out, and the
- * bytes of memory that it took.
- * @typedef {{status: number, out: string, lines: string[], files: File[], bytes: number}} Result
+ * What a run has left: its exit status, its standard output, the lines of its standard error, the files in /out, the
+ * bytes of memory that it took, and how many threads worked.
+ * @typedef {{status: number, out: string, lines: string[], files: File[], bytes: number, threads: number}} Result
  */
 /** @typedef {{onProgress?: (part: number) => void, signal?: AbortSignal}} Job */
 
 /** Returns whether the page has the program. */
 export const hasProgram = () => document.querySelector('[data-program]') !== null;
 
-/** @type {Promise<{script: string, module: WebAssembly.Module}> | null} */
+/** A thread more takes time to start and some megabytes, and loops wait for the slowest. */
+const MOST_THREADS = 16;
+/** @type {Promise<{script: string, threadScript: string, module: WebAssembly.Module}> | null} */
 let loading = null;
 
 /** Loads and compiles the program, the first time. */
 function load() {
   loading ??= (async () => {
-    const [program, worker, packed] = await Promise.all([
-      loadText('build/voxdag.js'), loadText('build/program_worker.js'), packedFile('build/voxdag.wasm.gz')]);
-    return { script: `${program}\n${worker}`, module: await WebAssembly.compile(packed) };
+    const [program, worker, thread, packed] = await Promise.all([
+      loadText('build/voxdag.js'), loadText('build/program_worker.js'), loadText('build/voxdag.worker.js'), packedFile('build/voxdag.wasm.gz')]);
+    // Emscripten's worker imports the program, which is before it here.
+    return { script: `${program}\n${worker}`, threadScript: `${program}\n${thread}\nself.importScripts = () => {};`, module: await WebAssembly.compile(packed) };
   })();
   loading.catch(() => { loading = null; });
   return loading;
@@ -56,10 +60,10 @@ export class Program {
 
   /** Starts one. Throws Error, also if `signal` has ended the job. @param {InputFile[]} files @param {Job} [job] */
   static async start(files, job = {}) {
-    const { script, module } = await load();
+    const { script, threadScript, module } = await load();
     job.signal?.throwIfAborted();
     const program = new Program(host.makeWorker(script), job);
-    program.worker.postMessage({ module, files });
+    program.worker.postMessage({ module, files, threadScript, threads: Math.min(host.threads(), MOST_THREADS) });
     return program;
   }
 

@@ -1,9 +1,11 @@
 /**
  * The worker of a program: see program.js. It stands behind voxdag.js in the worker's script. The first message brings the compiled
- * module and files; each of the others is a command line, or a request of the editor (apps/wasm/edit.cpp).
+ * module, files, and the number and the script of its threads; each of the others is a command line, or a request of the editor
+ * (apps/wasm/edit.cpp).
  */
 
-/** @typedef {{FS: any, callMain: (args: string[]) => number, ccall: (name: string, returns: string, types: string[], values: any[]) => number}} Voxdag */
+/** @typedef {{module: WebAssembly.Module, files: {name: string, data: Blob}[], threads: number, threadScript: string}} Start */
+/** @typedef {{FS: any, PThread: any, callMain: (args: string[]) => number, ccall: (name: string, returns: string, types: string[], values: any[]) => number}} Voxdag */
 
 /** @param {any} message @param {Transferable[]} [transfer] */
 const send = (message, transfer = []) => /** @type {any} */ (self).postMessage(message, transfer);
@@ -27,17 +29,37 @@ function holdLock() {
   });
 }
 
-/** @param {WebAssembly.Module} module @param {{name: string, data: Blob}[]} files @returns {Promise<Voxdag>} */
-async function start(module, files) {
+/** Makes memory that threads share. Where the browser does not give it room for 4 GiB, it has room for less. */
+function sharedMemory() {
+  for (let maximum = 65536; ; maximum /= 2) {
+    try {
+      return new WebAssembly.Memory({ initial: 256, maximum, shared: true });
+    } catch (error) {
+      if (maximum <= 4096) throw error;
+    }
+  }
+}
+
+/** @param {string} script */
+function makeThread(script) {
+  if (!('FileReaderSync' in self)) return new (/** @type {any} */ (self).require('node:worker_threads').Worker)(script, { eval: true, execArgv: [] });
+  const url = URL.createObjectURL(new Blob([script], { type: 'text/javascript' })), thread = new Worker(url);
+  URL.revokeObjectURL(url);
+  return thread;
+}
+
+/** @param {Start} message @returns {Promise<Voxdag>} */
+async function start({ module, files, threads, threadScript }) {
   await holdLock();
+  const shared = memory = sharedMemory();
+  // Other pages have the class, too, but not its name.
+  /** @type {any} */ (self).SharedArrayBuffer ??= shared.buffer.constructor;
   const program = await /** @type {any} */ (self).voxdagModule({
     print: (/** @type {string} */ line) => out.push(line), printErr: (/** @type {string} */ line) => lines.push(line),
+    wasmMemory: shared, threads, makeThread: () => makeThread(threadScript), mainScriptUrlOrBlob: 'voxdag.js',
     onProgress: (/** @type {string} */ stage, /** @type {number} */ part) => send({ type: 'progress', part }),
     instantiateWasm(/** @type {WebAssembly.Imports} */ imports, /** @type {(instance: WebAssembly.Instance, module: WebAssembly.Module) => void} */ take) {
-      WebAssembly.instantiate(module, imports).then((instance) => {
-        memory = Object.values(instance.exports).find((value) => value instanceof WebAssembly.Memory);
-        take(instance, module);
-      }, (error) => send({ type: 'failed', text: `the program cannot start: ${error.message}` }));
+      WebAssembly.instantiate(module, imports).then((instance) => take(instance, module), (error) => send({ type: 'failed', text: `the program cannot start: ${error.message}` }));
       return {};
     },
   });
@@ -70,8 +92,11 @@ function takeFiles(FS) {
 }
 
 /** @param {Voxdag} program @param {any} message */
-function answer({ FS, callMain, ccall }, { args, verb, writer, body }) {
-  if (args) return { status: callMain(args), out: out.join('\n'), lines, files: takeFiles(FS), bytes: memory?.buffer.byteLength ?? 0 };
+function answer({ FS, PThread, callMain, ccall }, { args, verb, writer, body }) {
+  if (args) {
+    const status = callMain(args);
+    return { status, out: out.join('\n'), lines, files: takeFiles(FS), bytes: memory?.buffer.byteLength ?? 0, threads: 1 + PThread.runningWorkers.length };
+  }
   const status = ccall('voxdag_edit', 'number', ['string', 'number', 'string'], [verb, writer, body]);
   const at = ccall('voxdag_result', 'number', [], []) >>> 0, size = ccall('voxdag_result_bytes', 'number', [], []) >>> 0;
   return { status, answer: new Uint8Array(/** @type {WebAssembly.Memory} */ (memory).buffer, at, size).slice(), files: takeFiles(FS) };
@@ -82,7 +107,7 @@ let program;
 self.onmessage = async ({ data }) => {
   try {
     if (data.module) {
-      program = start(data.module, data.files);
+      program = start(data);
       await program;
       return;
     }

@@ -14,6 +14,7 @@
  * @typedef {object} Host
  * @property {(path: string) => Promise<string | null>} text  Returns the text of a file of the page, base64 for those that end in .gz; null: it must be fetched.
  * @property {(script: string) => HostWorker} makeWorker  Starts a worker that runs a classic script.
+ * @property {() => number} threads  Returns how many threads may work in one memory: browsers let only pages share memory that are isolated from other sites.
  */
 
 /** A page in a single file holds its files in <script type="text/plain" data-path="...">. @type {Host} */
@@ -24,6 +25,7 @@ export const host = {
     URL.revokeObjectURL(url);
     return /** @type {any} */ (worker);
   },
+  threads: () => (globalThis.crossOriginIsolated ? navigator.hardwareConcurrency : 1),
 };
 
 /** Replaces parts of the host, before any other module asks it. @param {Partial<Host>} parts */

@@ -7,9 +7,11 @@
 
 namespace voxdag {
 
-void NodeStore::prefetch_found(std::uint64_t hash) const {
+void NodeStore::prefetch_found([[maybe_unused]] std::uint64_t hash) const {
+#ifndef __wasm__  // It has no prefetch.
   NodeId id = 0;
   if (table_.find_tag(hash, id)) __builtin_prefetch(words(id));
+#endif
 }
 
 NodeId NodeStore::intern(const std::uint32_t* words, int count, std::uint64_t hash, Run& run) {

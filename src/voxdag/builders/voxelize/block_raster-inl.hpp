@@ -33,11 +33,15 @@ struct SlabBlock {
 /// Returns lane i of the mask as bit i, for up to 16 lanes. Loads exactly the stored bytes, because
 /// a wider load would wait for the store.
 template <class D, class M>
-HWY_INLINE std::uint64_t mask_bits(D d, M mask) {
+HWY_INLINE std::uint64_t mask_bits([[maybe_unused]] D d, M mask) {
+#if HWY_TARGET == HWY_WASM  // Highway 1.0 takes the lanes one by one.
+  return sizeof(hn::TFromD<D>) == 4 ? wasm_i32x4_bitmask(mask.raw) : wasm_i64x2_bitmask(mask.raw);
+#else
   std::uint8_t bytes[8];
   hn::StoreMaskBits(d, mask, bytes);
   if constexpr (hn::MaxLanes(D()) <= 8) return bytes[0];
   return bytes[0] | static_cast<std::uint64_t>(bytes[1]) << 8;
+#endif
 }
 
 /// The coordinates of lane u + 4v of a block's square.
