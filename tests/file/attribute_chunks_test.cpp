@@ -7,8 +7,12 @@
 #include "support/error_of.hpp"
 #include "support/number_colors.hpp"
 #include "support/vdag_bytes.hpp"
+#include "voxdag/file/model/dag_model.hpp"
+#include "voxdag/file/verify_vdag.hpp"
 #include "voxdag/file/wire_chunks.hpp"
+#include "voxdag/stored/attributes/encode_channels.hpp"
 #include "voxdag/stored/attributes/look.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 
 namespace voxdag {
 namespace {
@@ -49,6 +53,26 @@ void read_all(const VdagContents& contents) {
       look_at(colored, morton_decode(code), level);
       if (contents.attributes.has_materials()) material_at(colored, morton_decode(code), level);
     }
+}
+
+/// Returns the file with a channel instead of the attributes of colored_file().
+std::string channel_file(bool compact = false) {
+  const Svdag& dag = small_dag();
+  DagAttributes attributes;
+  attributes.index = build_cell_index(dag.view(), 5);
+  std::vector<std::int32_t> codes;
+  for (std::uint64_t i = 0; i < attributes.index.cells; ++i)
+    codes.push_back(static_cast<std::int32_t>(i * i % 251));
+  const EncodedChannel channel = encode_channel({"squares", ChannelKind::kU8, 0}, codes);
+  attributes.channels = join_channels(codes.size(), {&channel, 1});
+  VdagMetadata metadata = example_metadata(dag.view());
+  metadata.attributes.resolution = 32;
+  const TempDir dir;
+  if (compact)
+    write_vdag(dir / "file.vdag", encode_svdag(dag.view()), metadata, attributes.view());
+  else
+    write_vdag(dir / "file.vdag", dag.view(), metadata, attributes.view());
+  return read_text(dir / "file.vdag");
 }
 
 constexpr AttributeForm kForms[] = {AttributeForm::kPages, AttributeForm::kWire};
@@ -208,6 +232,36 @@ TEST(AttributeChunks, ColoursWithoutNumbersAreRefused) {
   repair_checksums(bytes);
   EXPECT_NE(chunk_error_of(bytes).find("COLR: needs the chunk CIDX"), std::string::npos)
       << chunk_error_of(bytes);
+}
+
+TEST(AttributeChunks, ChannelsAreReadInBothForms) {
+  const TempDir dir;
+  for (const bool compact : {false, true}) {
+    write_text(dir / "file.vdag", channel_file(compact));
+    const DagModel model(dir / "file.vdag");
+    const ChannelsView channels = model.attributes().channels;
+    ASSERT_EQ(channels.count(), 1u);
+    EXPECT_EQ(channels[0].name(), "squares");
+    ASSERT_EQ(channels[0].values, model.attributes().index.cells);
+    for (std::uint64_t i = 0; i < channels[0].values; ++i)
+      ASSERT_EQ(channels[0].read(i), static_cast<double>(i * i % 251));
+    EXPECT_TRUE(compact || verify_vdag(dir / "file.vdag").passed());
+  }
+}
+
+TEST(AttributeChunks, ABrokenChannelIsRefusedWithItsPlace) {
+  std::string bytes = channel_file();
+  const VdagChunkEntry entry = entry_of(bytes, 5);
+  ASSERT_EQ(entry.id, kChunkChannels);
+  poke(bytes, entry.offset + offsetof(ChannelsHeader, values), std::uint64_t{7});
+  repair_checksums(bytes);
+  EXPECT_NE(chunk_error_of(bytes).find("chunk CHAN: has 7 values"), std::string::npos)
+      << chunk_error_of(bytes);
+  bytes = channel_file();
+  poke(bytes, entry.offset + 64 + 128, std::uint64_t{1});
+  repair_checksums(bytes);
+  EXPECT_EQ(chunk_error_of(bytes),
+            "chunk CHAN, channel 0, block 0: does not begin where the block before it ends");
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ struct ImportArguments {
   bool has_labels = false;
   std::string label_field;
   std::vector<std::string> keep, drop;
+  std::vector<ChannelRequest> channels;
   bool is_grey = false;
   bool compact = false;
   std::uint64_t memory_limit = 0;
@@ -66,7 +67,7 @@ ImportedModel import_file(const ImportArguments& arguments, Work work, Session& 
     with_file_name(file, [&] {
       std::unique_ptr<VoxelSource> source = open_voxel_source(
           file, {arguments.threshold, !options.voxel_size && !options.origin, arguments.format,
-                 arguments.grid, arguments.splats_are_points, labels, work});
+                 arguments.grid, arguments.splats_are_points, labels, arguments.channels, work});
       print_warnings(warnings_of(*source, file), session);
       if (source->has_points() && !source->grid() && !options.resolution && !options.voxel_size)
         options.resolution = kDefaultResolution;
@@ -129,6 +130,46 @@ std::string label_table(const DagModel& model) {
                    : "";
 }
 
+/// Reads FIELD[:as NAME][,bound=B][,kind=KIND].
+ChannelRequest parse_channel(const std::string& text) {
+  ChannelRequest request;
+  std::vector<std::string> parts = parse_words(text);
+  if (parts.empty()) throw std::invalid_argument("names no field");
+  const std::size_t as = parts[0].find(":as");
+  request.field = parts[0].substr(0, as);
+  if (as != std::string::npos) {
+    const std::size_t name = parts[0].find_first_not_of(" =", as + 3);
+    if (name == std::string::npos) throw std::invalid_argument("has no name after :as");
+    request.name = parts[0].substr(name);
+    if (!is_channel_name(request.name))
+      throw std::invalid_argument(
+          "names a channel with other characters than letters, digits, '_', '-' and '.'");
+  }
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    if (parts[i].starts_with("bound=")) {
+      request.bound = parse_positive(parts[i].substr(6));
+    } else if (parts[i].starts_with("kind=")) {
+      for (std::uint32_t kind = 0; kind < kChannelKinds; ++kind)
+        if (parts[i].substr(5) == name_of(static_cast<ChannelKind>(kind)))
+          request.kind = static_cast<ChannelKind>(kind);
+      if (!request.kind) throw std::invalid_argument("the kinds are u8, u16, i16, i32 and f32");
+    } else {
+      throw std::invalid_argument("\"" + parts[i] + "\" is neither bound=B nor kind=KIND");
+    }
+  }
+  return request;
+}
+
+/// Returns the line of the summary that names the channels; empty without channels.
+std::string channel_table(const DagModel& model) {
+  std::string names;
+  const ChannelsView channels = model.attributes().channels;
+  for (std::size_t i = 0; i < channels.count(); ++i)
+    names += (i > 0 ? ", " : "") + std::string(channels[i].name()) + " (" +
+             name_of(channels[i].kind) + ")";
+  return names.empty() ? "" : fmt::format("  {:<14}{}\n", "channels", names);
+}
+
 double parse_color_bound(const std::string& text) {
   const double bound = parse_finite(text);
   if (!(bound >= 0 && bound <= 1)) throw std::invalid_argument("must be from 0 to 1");
@@ -163,7 +204,7 @@ void import(const ImportArguments& arguments, Session& session) {
     std::error_code unknown;
     const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
     fmt::print(
-        "{}: {} read{}{}{}, {} voxels of {}³, {}, {}\n{}{}{}", arguments.output,
+        "{}: {} read{}{}{}, {} voxels of {}³, {}, {}\n{}{}{}{}", arguments.output,
         with_commas(result.read),
         result.outside > 0 ? fmt::format(", {} of them outside", with_commas(result.outside)) : "",
         result.unwanted > 0
@@ -175,6 +216,7 @@ void import(const ImportArguments& arguments, Session& session) {
         with_commas(counts.voxels), with_commas(model.grid().resolution()),
         human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
         human_seconds(watch.since_start()), splat_table(result), label_table(model),
+        channel_table(model),
         transform_table(arguments.transform, custom_of(arguments.files.front(), arguments.format)));
   }
 }
@@ -265,6 +307,12 @@ void add_import_command(const Command& program, Session& session) {
       .parsed("--drop", arguments->drop, parse_words, "LABEL,...",
               "Import all but these labels; implies --labels")
       .not_with(keep);
+  command.repeated(
+      "--channel", arguments->channels, parse_channel, "FIELD[:as NAME][,bound=B][,kind=KIND]",
+      "Keep a field as a channel, up to 16: a property of .ply, a field of .npy, the intensity "
+      "of .las, or value, the numbers of a volume. A voxel has the mean of its points. B is the "
+      "largest error of a stored value (default: lossless); KIND is u8, u16, i16, i32 or f32 "
+      "(default: that of the field, f32 with a bound)");
   command.flag("--points", arguments->splats_are_points,
                "For splats: read their centres as points");
   const Option no_colors =

@@ -135,6 +135,11 @@ void warn_of_missing(const std::vector<PlacedModel>& files, const std::vector<st
     add("colours", other.colors && !own.colors);
     add("normals", other.normals && !own.normals);
     add("material ids", other.materials != 0 && own.materials == 0);
+    const ChannelsView own_channels = files[i].model.attributes().channels,
+                       other_channels = files[1 - i].model.attributes().channels;
+    for (std::size_t k = 0; k < other_channels.count(); ++k)
+      add(("channel " + std::string(other_channels[k].name())).c_str(),
+          own_channels.find(other_channels[k].name()) == own_channels.count());
     if (kinds.empty()) continue;
     print_warnings({fmt::format("{} has no {}: its voxels count as new, and take those of the "
                                 "nearest voxel of {} or given ones",

@@ -1,4 +1,6 @@
 /// `voxdag render`: renders a picture or film of a .vdag or .esvo file.
+#include <fmt/core.h>
+
 #include <memory>
 
 #include "cli/commands.hpp"
@@ -12,6 +14,7 @@
 #include "render/render_mesh.hpp"
 #include "render/render_streamed.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/number_text.hpp"
 #include "voxdag/cpu/presentation.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cuda/render_image.hpp"
@@ -35,11 +38,21 @@ void render_loaded(const RenderArguments& arguments, Session& session) {
     look->show_materials(arguments.look, &session.progress);
   else if (arguments.materials)
     file.show_materials(session.subject, &session.progress);
+  if (!arguments.channel.empty()) {
+    const ChannelRange range =
+        (look ? *look : file)
+            .show_channel(look ? arguments.look : session.subject, arguments.channel,
+                          arguments.channel_range, &session.progress);
+    if (!arguments.channel_range && !session.quiet)
+      fmt::print(stderr, "{}: {} (violet) to {} (yellow)\n", arguments.channel,
+                 number_text(range.least), number_text(range.most));
+  }
   std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
   const LookOnDevice look_on_device(arguments.device, look ? *look : file, !look, device_scene);
   options.look = look_on_device.view();
   // --materials, which shows materials as colours, wins over the file of --view.
-  if (!arguments.view.colors && !arguments.materials) options.look.dag.attributes.colors = {};
+  if (!arguments.view.colors && !arguments.materials && arguments.channel.empty())
+    options.look.dag.attributes.colors = {};
   if (!arguments.view.normals) options.look.dag.attributes.normals = {};
   if (options.with_material) options.materials = (look ? *look : file).colored_dag();
   std::optional<CpuScene> cpu_scene;

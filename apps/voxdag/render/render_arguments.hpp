@@ -11,6 +11,7 @@
 #include "voxdag/image/image_size.hpp"
 #include "voxdag/render/film/picture_pass.hpp"
 #include "voxdag/render/render_options.hpp"
+#include "voxdag/stored/attributes/encode_channels.hpp"
 
 namespace voxdag::cli {
 
@@ -47,8 +48,10 @@ struct RenderArguments {
   std::string environment;                  ///< The file or the name of --environment; empty: none.
   std::string camera_matrix, write_camera;  ///< Files of cameras as matrices; empty: none.
   ViewFileArguments view;
-  std::string look;                 ///< The file of --look; empty: none.
-  bool materials = false;           ///< Show each material in a colour of its own.
+  std::string look;        ///< The file of --look; empty: none.
+  bool materials = false;  ///< Show each material in a colour of its own.
+  std::string channel;     ///< Show the values of this channel as colours.
+  std::optional<ChannelRange> channel_range;
   std::vector<PicturePass> passes;  ///< Values of --pass.
   ImageSize size{1920, 1080};
   RenderOptions options;

@@ -15,6 +15,17 @@
 namespace voxdag::cli {
 namespace {
 
+/// Parses "0,255"; throws std::invalid_argument.
+ChannelRange parse_channel_range(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) throw std::invalid_argument("must be two numbers: 0,255");
+  const ChannelRange range{parse_finite(text.substr(0, comma)),
+                           parse_finite(text.substr(comma + 1))};
+  if (!(range.least < range.most))
+    throw std::invalid_argument("the first number must be less than the second");
+  return range;
+}
+
 /// Parses "depth=z.exr"; throws std::invalid_argument.
 PicturePass parse_pass(const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -348,12 +359,26 @@ void add_render_options(const Command& command, Session& session, RenderArgument
                    "shadow, voxel, material, steps or steps64 to a .exr or .png file; repeatable");
   const auto shows_voxels = [&arguments] { return !arguments.mesh.is_seen(); };
   add_look_option(command, arguments.look).only_if(shows_voxels, "with --mesh");
+  const Option color_by =
+      command
+          .text("--color-by", arguments.channel, "CHANNEL",
+                "Show the values of a channel of the file or --look as colours, from violet for "
+                "the least to yellow for the greatest")
+          .only_if(shows_voxels, "with --mesh")
+          .only_if([&arguments] { return arguments.stream_memory == 0; },
+                   "with --memory: ESVOs have no channels");
+  command
+      .parsed("--range", arguments.channel_range, parse_channel_range, "LEAST,GREATEST",
+              "With --color-by: the values of the first and the last colour (default: those of "
+              "the channel)")
+      .needs(color_by);
   command
       .flag("--materials", arguments.materials,
             "Show each material in a colour of its own, if the file or --look has material ids")
       .only_if(shows_voxels, "with --mesh")
       .only_if([&arguments] { return arguments.stream_memory == 0; },
-               "with --memory: ESVOs have no material ids");
+               "with --memory: ESVOs have no material ids")
+      .not_with(color_by);
   add_mesh_options(command, arguments.mesh);
   add_path_options(command, arguments.path, view);
   add_device_option(command, arguments.device);

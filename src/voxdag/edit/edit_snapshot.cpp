@@ -1,4 +1,5 @@
 #include "voxdag/algebra/attributes/derive_attributes.hpp"
+#include "voxdag/algebra/attributes/placed_channels.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/edit/editable_dag.hpp"
@@ -58,7 +59,12 @@ DagAttributes EditSnapshot::attributes(const SvdagView& dag, const CoarsenBounds
   const ColoredDagView& values = version_->values;
   const EditedSource source(*version_->nodes, *version_->of_values, version_->root, values.overlays,
                             values.attributes);
-  return derive_attributes(dag, values.attributes.index.finest_level, source, bounds, work);
+  const int finest = values.attributes.index.finest_level;
+  DagAttributes attributes = derive_attributes(dag, finest, source, bounds, work);
+  if (!values.attributes.has_channels()) return attributes;
+  const AttributeLayer base{{values.dag, values.attributes}};
+  add_placed_channels(attributes, dag, finest, {&base, 1}, work);
+  return attributes;
 }
 
 }  // namespace voxdag

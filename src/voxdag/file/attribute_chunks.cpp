@@ -7,12 +7,14 @@
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/attributes/validate_channels.hpp"
 #include "voxdag/stored/attributes/validate_pages.hpp"
 
 namespace voxdag {
 namespace {
 
-constexpr std::uint32_t kValueChunks[] = {kChunkColors, kChunkNormals, kChunkMaterials};
+constexpr std::uint32_t kValueChunks[] = {kChunkColors, kChunkNormals, kChunkMaterials,
+                                          kChunkChannels};
 
 template <class Header>
 Header read_header(std::span<const std::byte> bytes) {
@@ -101,6 +103,12 @@ MaterialIdsView read_materials(std::span<const std::byte> bytes, std::uint64_t c
   return view;
 }
 
+ChannelsView read_channels(std::span<const std::byte> bytes, std::uint64_t cells) {
+  if (bytes.size() % 8 != 0) fail_at("", "length in bytes is not a multiple of 8");
+  return validate_channels({reinterpret_cast<const std::uint64_t*>(bytes.data()), bytes.size() / 8},
+                           cells);
+}
+
 void set_kind(ValuePagesHeader& header, const ValuePagesView& view) {
   header.precision = static_cast<std::uint32_t>(view.precision.code);
 }
@@ -148,10 +156,13 @@ AttributeChunks::AttributeChunks(const DagAttributesView& attributes, Index of_c
   };
   add_values(kChunkColors, attributes.colors, colors_, wire::ValueKind::kColor);
   add_values(kChunkNormals, attributes.normals, normals_, wire::ValueKind::kNormal);
-  if (!attributes.has_materials()) return;
   const MaterialIdsView& ids = attributes.materials;
-  if (form == AttributeForm::kPages || !add_wire(std::make_unique<WireChunk>(ids)))
+  if (attributes.has_materials() &&
+      (form == AttributeForm::kPages || !add_wire(std::make_unique<WireChunk>(ids))))
     add(kChunkMaterials, ids, materials_);
+  if (const ChannelsView& channels = attributes.channels; !channels.is_empty())
+    chunks_.push_back(
+        {kChunkChannels, 0, {std::as_bytes(std::span(channels.words, channels.bytes() / 8))}});
 }
 
 bool AttributeChunks::add_wire(std::unique_ptr<WireChunk> chunk) {
@@ -195,6 +206,9 @@ DagAttributesView read_attribute_values(const std::vector<VdagChunk>& chunks,
   read_values(kChunkNormals, attributes.normals);
   read_chunk(chunks, kChunkMaterials, [&](std::span<const std::byte> bytes) {
     attributes.materials = read_materials(bytes, index.cells);
+  });
+  read_chunk(chunks, kChunkChannels, [&](std::span<const std::byte> bytes) {
+    attributes.channels = read_channels(bytes, index.cells);
   });
   return attributes;
 }

@@ -12,6 +12,8 @@
 /// MTID, the materials of cells:
 ///   0    MaterialIdsHeader  64 bytes
 ///   64   MaterialIdsView::groups, ::words, ::pages
+///
+/// CHAN, the channels of cells: ChannelsView::words
 #include <memory>
 #include <span>
 #include <vector>
@@ -82,7 +84,8 @@ class AttributeChunks {
   std::vector<OutputChunk> chunks_;
 };
 
-/// Returns whether the file has values of cells: COLR, NRML or MTID, in either form.
+/// Returns whether the file has values of cells: COLR, NRML or MTID, in either form, or
+/// CHAN.
 bool has_attribute_values(const std::vector<VdagChunk>& chunks);
 
 /// Reads and checks the attributes of a valid DAG; returns an empty view if the file has none. The

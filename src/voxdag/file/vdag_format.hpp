@@ -73,6 +73,7 @@ inline constexpr std::uint32_t kChunkCellIndex = vdag_chunk_id("CIDX");    ///< 
 inline constexpr std::uint32_t kChunkColors = vdag_chunk_id("COLR");       ///< attribute_chunks.hpp
 inline constexpr std::uint32_t kChunkNormals = vdag_chunk_id("NRML");      ///< attribute_chunks.hpp
 inline constexpr std::uint32_t kChunkMaterials = vdag_chunk_id("MTID");    ///< attribute_chunks.hpp
+inline constexpr std::uint32_t kChunkChannels = vdag_chunk_id("CHAN");     ///< attribute_chunks.hpp
 inline constexpr std::uint32_t kChunkWireColors = vdag_chunk_id("WCOL");   ///< wire_chunks.hpp
 inline constexpr std::uint32_t kChunkWireNormals = vdag_chunk_id("WNRM");  ///< wire_chunks.hpp
 inline constexpr std::uint32_t kChunkWireMaterials = vdag_chunk_id("WMTI");  ///< wire_chunks.hpp

@@ -190,7 +190,7 @@ SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels) {
 
 LongSvdagView read_vdag_long_svdag(const std::vector<VdagChunk>& chunks, int levels) {
   for (const std::uint32_t id :
-       {kChunkNodes, kChunkCellIndex, kChunkColors, kChunkNormals, kChunkMaterials,
+       {kChunkNodes, kChunkCellIndex, kChunkColors, kChunkNormals, kChunkMaterials, kChunkChannels,
         kChunkWireColors, kChunkWireNormals, kChunkWireMaterials})
     if (has_chunk(chunks, id)) fail_at(table_place(id), "does not go with the chunk NODX");
   return read_dag<LongSvdagView>(chunks, levels, kChunkLongNodes);

@@ -57,7 +57,7 @@ DerivedValues::DerivedValues(const SvdagView& dag, int finest_level, const Value
       copies_colors_(bounds.color_bound <= 0),
       copies_normals_(bounds.normal_bound_degrees < kMinNormalBound),
       work_(work),
-      result_{build_cell_index(dag, finest_level, work.memory), {}, {}, {}, {}, {}},
+      result_{build_cell_index(dag, finest_level, work.memory), {}, {}, {}, {}, {}, {}},
       index_bytes_(work.memory, result_.index.view().bytes()),
       index_(result_.index.view()),
       finest_(dag, index_, work.memory),

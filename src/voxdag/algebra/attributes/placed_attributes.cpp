@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "voxdag/algebra/attributes/derive_attributes.hpp"
+#include "voxdag/algebra/attributes/placed_channels.hpp"
 
 namespace voxdag {
 
@@ -20,9 +21,13 @@ DagAttributes placed_attributes(const SvdagView& dag, std::span<const AttributeL
     cut = std::min(cut, layer.colored.dag.levels - layer.colored.attributes.index.finest_level);
   }
   const int finest = std::max(dag.levels - cut, 0);
-  if (dag.is_empty() || kinds.is_empty()) return {};
-  const PlacedSource source(dag, finest, layers, new_values, kinds, work.memory);
-  return derive_attributes(dag, finest, source, bounds, work);
+  DagAttributes result;
+  if (!dag.is_empty() && !kinds.is_empty()) {
+    const PlacedSource source(dag, finest, layers, new_values, kinds, work.memory);
+    result = derive_attributes(dag, finest, source, bounds, work);
+  }
+  add_placed_channels(result, dag, finest, layers, work);
+  return result;
 }
 
 }  // namespace voxdag

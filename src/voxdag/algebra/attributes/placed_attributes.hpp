@@ -12,7 +12,8 @@ namespace voxdag {
 /// with this kind that has a cell of its finest level with attributes at the voxel. A new voxel,
 /// for which no layer has one, has the value of `new_values`, else that of the layer's voxel that
 /// is nearest to its centre (algebra/query/nearest_voxel.hpp says which one of equally near ones),
-/// in the first layer with this kind. Normals turn with their layer.
+/// in the first layer with this kind. Normals turn with their layer. Each channel is a kind
+/// (placed_channels.hpp); `new_values` has none.
 ///
 /// The finest cells with attributes have the size of the smallest ones of the layers, so that no
 /// layer loses values. derive_attributes() makes the values of cells from those of voxels, and says

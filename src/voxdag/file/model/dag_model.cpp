@@ -3,12 +3,14 @@
 #include <utility>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/printable.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/model/no_materials.hpp"
 #include "voxdag/file/model/written_by.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/attributes/channel_colors.hpp"
 #include "voxdag/stored/attributes/material_colors.hpp"
 #include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
@@ -73,13 +75,31 @@ SvdagView DagModel::view() const {
 DagAttributesView DagModel::attributes() const {
   DagAttributesView view =
       std::visit([](const auto& dag) -> DagAttributesView { return dag.attributes(); }, dag_);
-  if (material_colors_) view.colors = material_colors_->view();
+  if (shown_colors_) view.colors = shown_colors_->view();
   return view;
 }
 
 void DagModel::show_materials(const std::filesystem::path& path, Work work) {
   if (!attributes().has_materials()) fail_without_materials(path);
-  material_colors_ = material_colors(attributes().materials, work);
+  shown_colors_ = material_colors(attributes().materials, work);
+}
+
+ChannelRange DagModel::show_channel(const std::filesystem::path& path, const std::string& name,
+                                    const std::optional<ChannelRange>& range, Work work) {
+  const ChannelsView channels = attributes().channels;
+  const std::size_t i = channels.find(name);
+  if (i == channels.count()) {
+    std::string names;
+    for (std::size_t k = 0; k < channels.count(); ++k)
+      names += (k > 0 ? ", " : "") + std::string(channels[k].name());
+    throw Error(path.string(), "",
+                "has no channel " + in_quotes(name) +
+                    (names.empty() ? ": voxdag import --channel stores some"
+                                   : ": its channels are " + names));
+  }
+  const ChannelRange used = range.value_or(range_of(channels[i]));
+  shown_colors_ = channel_colors(channels[i], used, work);
+  return used;
 }
 
 }  // namespace voxdag

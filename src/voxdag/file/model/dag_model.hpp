@@ -8,6 +8,7 @@
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
 #include "voxdag/stored/attributes/dag_attributes.hpp"
+#include "voxdag/stored/attributes/encode_channels.hpp"
 
 namespace voxdag {
 
@@ -39,6 +40,11 @@ class DagModel {
   std::uint64_t file_bytes() const { return file_bytes_; }
   /// Replaces the colours by one for each material. Throws Error if the file has no material ids.
   void show_materials(const std::filesystem::path& path, Work work);
+  /// Replaces the colours by those of a channel's values (channel_colors.hpp). Without `range`,
+  /// they reach from the least to the greatest value. Returns the range. Throws Error if the file
+  /// has no such channel.
+  ChannelRange show_channel(const std::filesystem::path& path, const std::string& name,
+                            const std::optional<ChannelRange>& range, Work work);
   /// Returns whether the file has the compact form.
   bool is_compact() const { return std::holds_alternative<Decoded>(dag_); }
 
@@ -65,7 +71,7 @@ class DagModel {
   static Decoded decode(CompactFile file, const std::string& path, Work work);
 
   std::variant<VdagFile, Decoded, Made> dag_;
-  std::optional<ValuePages> material_colors_;  ///< After show_materials().
+  std::optional<ValuePages> shown_colors_;  ///< After show_materials() and show_channel().
   VdagMetadata metadata_;
   std::uint64_t file_bytes_ = 0;
   MemoryReservation memory_;

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "voxdag/core/error.hpp"
 #include "voxdag/file/model/no_materials.hpp"
 
 namespace voxdag {
@@ -29,6 +30,13 @@ void SceneModel::show_materials(const std::filesystem::path& path, Work work) {
   DagModel* const dag = std::get_if<DagModel>(&scene_);
   if (dag == nullptr) fail_without_materials(path);
   dag->show_materials(path, work);
+}
+
+ChannelRange SceneModel::show_channel(const std::filesystem::path& path, const std::string& name,
+                                      const std::optional<ChannelRange>& range, Work work) {
+  DagModel* const dag = std::get_if<DagModel>(&scene_);
+  if (dag == nullptr) throw Error(path.string(), "", "is an ESVO, which has no channels");
+  return dag->show_channel(path, name, range, work);
 }
 
 const SceneMetadata& SceneModel::metadata() const {

@@ -26,6 +26,9 @@ class SceneModel {
   const Grid& grid() const { return metadata().grid; }
   /// Calls DagModel::show_materials(). Throws Error for an ESVO, which has no material ids.
   void show_materials(const std::filesystem::path& path, Work work = {});
+  /// Calls DagModel::show_channel(). Throws Error for an ESVO, which has no channels.
+  ChannelRange show_channel(const std::filesystem::path& path, const std::string& name,
+                            const std::optional<ChannelRange>& range, Work work = {});
 
  private:
   std::variant<DagModel, EsvoFile> scene_;

@@ -73,6 +73,15 @@ Json attributes_json(const AttributesMetadata& metadata, const AttributeSizes& s
     material["form"] = form;
     material["names"] = *metadata.materials;
   }
+  if (!sizes.channels.empty()) json["channels"] = Json::array();
+  for (const ChannelReport& channel : sizes.channels)
+    json["channels"].push_back({{"name", channel.spec.name},
+                                {"kind", name_of(channel.spec.kind)},
+                                {"bound", channel.spec.bound},
+                                {"bytes", channel.bytes},
+                                {"bits_per_cell", bits_per_cell(channel.bytes, sizes)},
+                                {"least", channel.range.least},
+                                {"greatest", channel.range.most}});
   return json;
 }
 
@@ -115,6 +124,13 @@ std::string attributes_table(const AttributesMetadata& metadata, const Attribute
     add("material ids", sizes.material_bytes,
         fmt::format(", {} {}s{}", with_commas(metadata.materials->size()), ids,
                     first_names(*metadata.materials)));
+  for (const ChannelReport& channel : sizes.channels)
+    text +=
+        fmt::format("  {:<14}{}, {:.3f} bits/cell, {}{}, {:.6g} to {:.6g}\n", "channel",
+                    channel.spec.name + ": " + human_bytes(channel.bytes),
+                    bits_per_cell(channel.bytes, sizes), name_of(channel.spec.kind),
+                    channel.spec.bound > 0 ? fmt::format(" within {:.6g}", channel.spec.bound) : "",
+                    channel.range.least, channel.range.most);
   return text;
 }
 
@@ -122,8 +138,20 @@ std::string attributes_table(const AttributesMetadata& metadata, const Attribute
 
 AttributeSizes sizes_of(const DagAttributesView& attributes) {
   if (attributes.is_empty()) return {};
-  return {attributes.index.cells,     attributes.index.bytes(),     attributes.colors.bytes(),
-          attributes.normals.bytes(), attributes.materials.bytes(), false};
+  AttributeSizes sizes{attributes.index.cells,       attributes.index.bytes(),
+                       attributes.colors.bytes(),    attributes.normals.bytes(),
+                       attributes.materials.bytes(), false};
+  for (std::size_t i = 0; i < attributes.channels.count(); ++i) {
+    const ChannelView channel = attributes.channels[i];
+    sizes.channels.push_back({spec_of(channel), 8 * channel.word_count, range_of(channel)});
+  }
+  return sizes;
+}
+
+std::uint64_t AttributeSizes::channel_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const ChannelReport& channel : channels) bytes += channel.bytes;
+  return bytes;
 }
 
 CompactBytes bytes_of(const CompactSvdagView& compact, std::uint64_t head_bytes) {
@@ -245,7 +273,9 @@ std::string dag_table(const DagReport& report) {
   attribute_row("colours", sizes.color_bytes, sizes.color_bytes);
   attribute_row("normals", sizes.normal_bytes, sizes.normal_bytes);
   attribute_row("material ids", sizes.material_bytes, sizes.material_bytes);
-  const std::uint64_t values = sizes.color_bytes + sizes.normal_bytes + sizes.material_bytes;
+  attribute_row("channels", sizes.channel_bytes(), sizes.channel_bytes());
+  const std::uint64_t values =
+      sizes.color_bytes + sizes.normal_bytes + sizes.material_bytes + sizes.channel_bytes();
   attribute_row("all", report.svdag_bytes() + sizes.index_bytes + values, compact.total() + values);
   text += row("bits/voxel", fmt::format("{:.3f}", bits_per_voxel(report.svdag_bytes(), counts)),
               fmt::format("{:.3f}", bits_per_voxel(compact.total(), counts)), "");

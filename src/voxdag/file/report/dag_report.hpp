@@ -6,18 +6,30 @@
 #include <string>
 
 #include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/stored/attributes/encode_channels.hpp"
 #include "voxdag/stored/attributes/stored_attributes.hpp"
 #include "voxdag/stored/compact/compact_svdag.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 
+/// A channel, and the least and the greatest of its values.
+struct ChannelReport {
+  ChannelSpec spec;
+  std::uint64_t bytes = 0;
+  ChannelRange range;
+};
+
 /// Counts and bytes of a DAG's attributes; all 0 if it has none.
 struct AttributeSizes {
   std::uint64_t cells = 0;
   std::uint64_t index_bytes = 0, color_bytes = 0, normal_bytes = 0, material_bytes = 0;
   bool is_wire = false;  ///< Colours and normals have the wire form.
+  std::vector<ChannelReport> channels = {};
+
+  std::uint64_t channel_bytes() const;
 };
+/// Reads all values of channels.
 AttributeSizes sizes_of(const DagAttributesView& attributes);
 
 /// The bytes of a DAG in the compact form, by part.

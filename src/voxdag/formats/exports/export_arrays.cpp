@@ -6,6 +6,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/file/npy.hpp"
+#include "voxdag/formats/exports/channel_fields.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
 #include "voxdag/formats/exports/volume_file.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
@@ -21,13 +22,21 @@ const ArrayLayout kRawDense{"1 where the voxel is set", "uint8", "zyx"};
 
 /// The type of a row of coordinates. It is a structured type if the look has attributes.
 struct CoordinateRows {
-  explicit CoordinateRows(const LookReader& look) {
-    if (look.is_empty()) return;
+  CoordinateRows(const LookReader& look, const ChannelFields& channels) {
+    if (look.is_empty() && channels.is_empty()) return;
     layout = {"voxels with their attributes, in Morton order", "", ""};
     dtype = "[('voxel', '<i4', (3,))";
     if (look.has_normals()) add(", ('normal', '<f4', (3,))", sizeof(Vec3f));
     if (look.has_colors()) add(", ('color', '|u1', (3,))", sizeof(Value8));
     if (look.has_materials()) add(", ('material', '<u2')", sizeof(std::uint16_t));
+    for (std::size_t i = 0; i < channels.count(); ++i) {
+      constexpr const char* kTaken[] = {"voxel", "normal", "color", "material"};
+      constexpr const char* kTypes[] = {"|u1", "<u2", "<i2", "<i4", "<f4"};
+      const ChannelKind kind = channels.kind(i);
+      add(", ('" + channels.name(i, kTaken) + "', '" + kTypes[static_cast<std::size_t>(kind)] +
+              "')",
+          ChannelFields::size_of(kind));
+    }
     dtype += "]";
     layout.dtype = dtype;
     shape = {};
@@ -41,7 +50,7 @@ struct CoordinateRows {
   ArrayLayout layout{"voxel coordinates (x, y, z), in Morton order", "int32", ""};
 
  private:
-  void add(const char* field, std::size_t size) {
+  void add(const std::string& field, std::size_t size) {
     dtype += field;
     bytes += size;
   }
@@ -112,7 +121,8 @@ void export_npy_coordinates(const std::filesystem::path& path, const VoxelSet& v
                             const Grid& grid, const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
   LookReader look = options.look_reader();
-  const CoordinateRows row(look);
+  ChannelFields channels(look);
+  const CoordinateRows row(look, channels);
   const std::uint64_t count = count_for_export(path, voxels, window, row.bytes, options);
   NpyWriter writer(path, row.dtype, row.shape, row.item_bytes, count);
   std::vector<std::byte> rows;
@@ -121,11 +131,15 @@ void export_npy_coordinates(const std::filesystem::path& path, const VoxelSet& v
       const Vec3i voxel =
           origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
       append(rows, voxel);
-      if (look.is_empty()) continue;
-      const VoxelLook of_voxel = look.read(voxel, voxels.levels());
-      if (look.has_normals()) append(rows, of_voxel.normal);
-      if (look.has_colors()) append(rows, of_voxel.color);
-      if (look.has_materials()) append(rows, of_voxel.material);
+      if (!look.is_empty()) {
+        const VoxelLook of_voxel = look.read(voxel, voxels.levels());
+        if (look.has_normals()) append(rows, of_voxel.normal);
+        if (look.has_colors()) append(rows, of_voxel.color);
+        if (look.has_materials()) append(rows, of_voxel.material);
+      }
+      if (channels.is_empty()) continue;
+      const std::span<const std::byte> fields = channels.row(voxel, voxels.levels());
+      rows.insert(rows.end(), fields.begin(), fields.end());
     }
     if (rows.size() < kRowsAtOnce * row.bytes) return;
     writer.write_bytes(rows.data(), rows.size());

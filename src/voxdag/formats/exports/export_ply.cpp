@@ -7,6 +7,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/formats/exports/channel_fields.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
 #include "voxdag/formats/exports/faces/exported_polygons.hpp"
@@ -21,6 +22,7 @@ class PlyFile {
  public:
   struct Content {
     bool faces = false, normals = false, colors = false, materials = false;
+    std::string channels = {};  ///< Lines of the header.
   };
 
   PlyFile(const std::filesystem::path& path, const Grid& grid, const Content& content,
@@ -31,8 +33,9 @@ class PlyFile {
     file_.write_zeros(header_bytes_);
   }
 
-  /// Writes a vertex, with the parts of `look` that the content has.
-  void write_vertex(Vec3d grid_position, const VoxelLook& look) {
+  /// Writes a vertex, with the parts of `look` that the content has, and the values of channels.
+  void write_vertex(Vec3d grid_position, const VoxelLook& look,
+                    std::span<const std::byte> channels) {
     const Vec3d world = grid_.to_world(grid_position);
     if (use_float_) {
       const Vec3f rounded(world);
@@ -43,6 +46,7 @@ class PlyFile {
     if (content_.normals) file_.write(&look.normal, sizeof look.normal);
     if (content_.colors) file_.write(&look.color, sizeof look.color);
     if (content_.materials) file_.write(&look.material, sizeof look.material);
+    if (!channels.empty()) file_.write(channels.data(), channels.size());
     ++vertices_;
   }
 
@@ -89,6 +93,7 @@ class PlyFile {
       for (const char* channel : {"red", "green", "blue"})
         text += std::string("property uchar ") + channel + "\n";
     if (content_.materials) text += "property ushort material\n";
+    text += content_.channels;
     if (content_.faces)
       text +=
           "element face " + std::to_string(faces) + "\nproperty list uchar int vertex_indices\n";
@@ -104,9 +109,35 @@ class PlyFile {
   std::uint64_t vertices_ = 0, faces_ = 0;
 };
 
-PlyFile::Content content_of(const LookReader& look, bool faces) {
-  return {faces, look.has_normals(), look.has_colors(), look.has_materials()};
+PlyFile::Content content_of(const LookReader& look, const ChannelFields& channels, bool faces) {
+  constexpr const char* kTaken[] = {"x",   "y",     "z",    "nx",    "ny",      "nz",
+                                    "red", "green", "blue", "alpha", "material"};
+  constexpr const char* kTypes[] = {"uchar", "ushort", "short", "int", "float"};
+  std::string lines;
+  for (std::size_t i = 0; i < channels.count(); ++i)
+    lines += std::string("property ") + kTypes[static_cast<std::size_t>(channels.kind(i))] + " " +
+             channels.name(i, kTaken) + "\n";
+  return {faces, look.has_normals(), look.has_colors(), look.has_materials(), lines};
 }
+
+/// The look and the channels of a voxel.
+struct VertexValues {
+  explicit VertexValues(const ExportOptions& options)
+      : look(options.look_reader()), channels(look) {}
+  VertexValues(const VertexValues&) = delete;
+  VertexValues& operator=(const VertexValues&) = delete;
+
+  bool is_empty() const { return look.is_empty() && channels.is_empty(); }
+  void read(Vec3i voxel, int level) {
+    if (!look.is_empty()) of_voxel = look.read(voxel, level);
+    if (!channels.is_empty()) fields = channels.row(voxel, level);
+  }
+
+  LookReader look;
+  ChannelFields channels;
+  VoxelLook of_voxel;
+  std::span<const std::byte> fields;
+};
 
 constexpr int kCorners = 5 * 5 * 5;  ///< Corners of the voxels of a leaf block.
 
@@ -204,12 +235,12 @@ void check_corner_count(const std::filesystem::path& path, const PlyFile& file) 
 void write_smooth(const std::filesystem::path& path, const VoxelSet& voxels, const Box3i& window,
                   const ExportOptions& options, PlyFile& file) {
   ExportedPolygons polygons(voxels, window, options, PolygonFormat::kVertexLooks);
-  LookReader look = options.look_reader();
-  VoxelLook of_voxel;
+  VertexValues values(options);
   polygons.for_each(
       [&](const FacePolygon& polygon, const SharedVertices& vertices) {
-        if (!look.is_empty()) of_voxel = look.read(polygon.voxel, voxels.levels());
-        for (const Vec3d place : vertices.added()) file.write_vertex(place, of_voxel);
+        values.read(polygon.voxel, voxels.levels());
+        for (const Vec3d place : vertices.added())
+          file.write_vertex(place, values.of_voxel, values.fields);
         check_corner_count(path, file);
       },
       0.5);
@@ -228,18 +259,20 @@ void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels
                        const ExportOptions& options) {
   refuse_pipe(path);
   const Box3i window = export_window(path, voxels, options);
-  LookReader look = options.look_reader();
+  VertexValues values(options);
+  const LookReader& look = values.look;
   const std::uint64_t vertex_bytes = sizeof(Vec3f) + (look.has_normals() ? sizeof(Vec3f) : 0) +
                                      (look.has_colors() ? sizeof(Value8) : 0) +
-                                     (look.has_materials() ? sizeof(std::uint16_t) : 0);
+                                     (look.has_materials() ? sizeof(std::uint16_t) : 0) +
+                                     values.channels.bytes();
   const std::uint64_t count = count_for_export(path, voxels, window, vertex_bytes, options);
-  PlyFile file(path, grid, content_of(look, false), options.turn);
+  PlyFile file(path, grid, content_of(look, values.channels, false), options.turn);
   export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t mask) {
     for (; mask != 0; mask &= mask - 1) {
       const Vec3i voxel =
           origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
-      file.write_vertex(Vec3d(voxel) + Vec3d{0.5, 0.5, 0.5},
-                        look.is_empty() ? VoxelLook{} : look.read(voxel, voxels.levels()));
+      values.read(voxel, voxels.levels());
+      file.write_vertex(Vec3d(voxel) + Vec3d{0.5, 0.5, 0.5}, values.of_voxel, values.fields);
     }
   });
   file.commit();
@@ -249,9 +282,9 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
                       const ExportOptions& options) {
   refuse_pipe(path);
   const Box3i window = export_window(path, voxels, options);
-  LookReader look = options.look_reader();
-  const bool by_voxel = !look.is_empty();
-  PlyFile file(path, grid, content_of(look, true), options.turn);
+  VertexValues values(options);
+  const bool by_voxel = !values.is_empty();
+  PlyFile file(path, grid, content_of(values.look, values.channels, true), options.turn);
   if (options.faces == FaceMesh::kSmooth) {
     write_smooth(path, voxels, window, options, file);
     return file.commit();
@@ -265,10 +298,11 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
     });
   };
   for_each_surface([&](const BlockSurface& surface, Vec3i origin, Vec3i voxel) {
-    const VoxelLook of_voxel = by_voxel ? look.read(voxel, voxels.levels()) : VoxelLook{};
+    if (by_voxel) values.read(voxel, voxels.levels());
     for (int i = 0; i < kCorners; ++i)
       if (surface.corners[i])
-        file.write_vertex(Vec3d(origin + Vec3i{i % 5, i / 5 % 5, i / 25}), of_voxel);
+        file.write_vertex(Vec3d(origin + Vec3i{i % 5, i / 5 % 5, i / 25}), values.of_voxel,
+                          values.fields);
     check_corner_count(path, file);
   });
   std::uint32_t first_vertex = 0;

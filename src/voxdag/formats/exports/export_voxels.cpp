@@ -78,6 +78,10 @@ struct ExportFormat {
   bool has_colors;
   char up = 0;                 ///< The axis that points up by custom; 0: none.
   bool has_placement = false;  ///< `write` writes PATH.json, or removes that of an earlier export.
+
+  bool has_channels(bool has_window) const {
+    return (write == npy && !has_window) || write == ply || write == one_file<export_vdb>;
+  }
 };
 
 /// ".spc.npy" comes before ".npy": the first ending that matches counts.
@@ -145,6 +149,10 @@ std::vector<std::filesystem::path> export_voxels(const std::filesystem::path& pa
                     "': the extension must be " + export_extensions());
   Files files = format->write({path, voxels, grid, content, options});
   if (!format->has_placement) remove_placement(path);
+  if (options.notes != nullptr && options.look.dag.attributes.has_channels() &&
+      !format->has_channels(options.window.has_value()))
+    options.notes->push_back(
+        "the channels are left out: .ply, .npy without a window, .vdb and .nvdb have them");
   return files;
 }
 

@@ -22,12 +22,16 @@ class BatchedVoxels {
   void add_splat(const Splat& splat) { splats_.push_back(splat); }
   /// Notes the label of the place that is added next. A source gives all its places one, or none.
   void add_label(Label label) { labels_.push_back(label); }
+  /// Notes the next channel of the place that is added next. A source gives all its places the same
+  /// channels.
+  void add_channel(double value) { channels_.push_back(value); }
   void finish() {
-    if (!places_.empty()) visit_({places_, colors_, splats_, labels_});
+    if (!places_.empty()) visit_({places_, colors_, splats_, labels_, channels_});
     places_.clear();
     colors_.clear();
     splats_.clear();
     labels_.clear();
+    channels_.clear();
   }
 
  private:
@@ -38,6 +42,7 @@ class BatchedVoxels {
   std::vector<Rgb8> colors_;
   std::vector<Splat> splats_;
   std::vector<Label> labels_;
+  std::vector<double> channels_;
 };
 
 }  // namespace voxdag

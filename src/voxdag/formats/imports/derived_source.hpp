@@ -18,6 +18,7 @@ class DerivedSource : public VoxelSource {
   bool has_splats() const override { return source_->has_splats(); }
   bool has_labels() const override { return source_->has_labels(); }
   std::map<Label, std::string> label_names() const override { return source_->label_names(); }
+  std::vector<ChannelSpec> channels() const override { return source_->channels(); }
   CoordinateError coordinate_error() const override { return source_->coordinate_error(); }
   bool has_palette() const override { return source_->has_palette(); }
   std::optional<Grid> grid() const override { return source_->grid(); }
@@ -35,7 +36,7 @@ class DerivedSource : public VoxelSource {
     source_->visit_all([&](const VoxelBatch& batch) {
       places.clear();
       for (const Vec3d place : batch.places) places.push_back(place_of(place));
-      visit({places, batch.colors, {}, batch.labels});
+      visit({places, batch.colors, {}, batch.labels, batch.channels});
     });
   }
 

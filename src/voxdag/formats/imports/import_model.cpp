@@ -49,13 +49,13 @@ ImportedModel import_model(const VoxelSource& source, const ImportOptions& optio
     metadata.build["min_scale"] = number_text(*result.splats.min_scale);
     metadata.build["max_scale"] = number_text(*result.splats.max_scale);
   }
-  if (result.attributes.view().has_colors()) {
+  if (!result.attributes.view().is_empty())
     metadata.attributes.resolution = result.grid.resolution();
+  if (result.attributes.view().has_colors()) {
     metadata.attributes.colors = {color_bound_of(source, options),
                                   result.attributes.color_errors.squared};
   }
   if (result.attributes.view().has_materials()) {
-    metadata.attributes.resolution = result.grid.resolution();
     metadata.attributes.materials = std::move(result.label_names);
     metadata.attributes.labels = std::move(result.labels);
   }

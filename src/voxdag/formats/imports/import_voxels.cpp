@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/formats/imports/channels/channel_collector.hpp"
 #include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
 #include "voxdag/formats/imports/labels/label_collector.hpp"
 #include "voxdag/formats/imports/labels/label_names.hpp"
@@ -151,22 +153,32 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
     }
   };
   const bool has_colors = options.colors && source.has_colors(), has_labels = source.has_labels();
+  const std::vector<ChannelSpec> specs = source.channels();
+  const std::size_t tables = specs.size() + (has_colors ? 1 : 0) + (has_labels ? 1 : 0);
   const ColorRule rule = source.has_palette() ? ColorRule::kLast : ColorRule::kMean;
   const auto most = [&](std::size_t bytes) {
-    return voxels_in_memory(work.memory, bytes) / (has_colors && has_labels ? 2 : 1);
+    return voxels_in_memory(work.memory, bytes) / std::max<std::size_t>(tables, 1);
   };
   std::optional<ColoredVoxelBuilder> colors;
   std::optional<LabelCollector> labels;
   std::optional<VoxelBuilder> voxels;
   if (has_colors) colors.emplace(levels, most(sizeof(ColoredCode)), options.folder, work, rule);
   if (has_labels) labels.emplace(levels, most(sizeof(LabelledCode)), options.folder, work, rule);
-  if (!has_colors && !has_labels)
-    voxels.emplace(levels, most(sizeof(std::uint64_t)), options.folder, work);
+  std::vector<EncodedChannel> encoded;
+  for (const ChannelSpec& spec : specs) encoded.push_back({spec, {}});
+  join_channels(1, encoded);  // Refuses wrong lists before the file is read.
+  encoded.clear();
+  std::deque<ChannelCollector> channels;
+  for (const ChannelSpec& spec : specs)
+    channels.emplace_back(levels, spec, most(sizeof(ValuedCode)), options.folder, work);
+  if (tables == 0) voxels.emplace(levels, most(sizeof(std::uint64_t)), options.folder, work);
   source.visit_all([&](const VoxelBatch& batch) {
     if (voxels) return each_voxel(batch, [&](Vec3i voxel, std::size_t) { voxels->add(voxel); });
     each_voxel(batch, [&](Vec3i voxel, std::size_t i) {
       if (colors) colors->add(voxel, batch.colors[i]);
       if (labels) labels->add(voxel, batch.labels[i]);
+      for (std::size_t c = 0; c < channels.size(); ++c)
+        channels[c].add(voxel, batch.channels[i * channels.size() + c]);
     });
   });
   if (voxels) {
@@ -177,18 +189,21 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
     result.dag = std::move(dag);
     result.attributes = std::move(attributes);
   } else {
-    result.dag = labels->make_dag();
+    result.dag = labels ? labels->make_dag() : channels.front().make_dag();
   }
+  const MemoryReservation bytes(work.memory, result.dag.view().bytes() + result.attributes.bytes());
+  if (tables > 0 && !has_colors && !result.dag.view().is_empty())
+    result.attributes.index = build_cell_index(result.dag.view(), levels, work.memory);
   if (labels) {
-    const MemoryReservation bytes(work.memory,
-                                  result.dag.view().bytes() + result.attributes.bytes());
-    if (!has_colors && !result.dag.view().is_empty())
-      result.attributes.index = build_cell_index(result.dag.view(), levels, work.memory);
     LabelIds found = labels->encode();
     result.attributes.materials = std::move(found.ids);
     result.label_names = names_of_labels(found.labels, source.label_names());
     result.labels = std::move(found.labels);
+    labels.reset();
   }
+  for (; !result.dag.view().is_empty() && !channels.empty(); channels.pop_front())
+    encoded.push_back(channels.front().encode(result.dag.view(), result.attributes.index.view()));
+  result.attributes.channels = join_channels(result.attributes.index.cells, encoded);
   return result;
 }
 

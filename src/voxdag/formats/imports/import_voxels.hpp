@@ -44,7 +44,7 @@ inline double color_bound_of(const VoxelSource& source, const ImportOptions& opt
 
 struct ImportResult {
   Svdag dag;
-  DagAttributes attributes;  ///< Colours and labels of all cells, if there are any.
+  DagAttributes attributes;  ///< Colours, labels and channels of all cells, if there are any.
   /// The label and the name of each material, if the source has labels: names are unique, those of
   /// labels without a name are their numbers.
   std::vector<Label> labels;
@@ -69,8 +69,8 @@ struct ImportResult {
 /// at 0 that holds them. Reads the file once or twice; memory is bounded. Throws Error, OverMemory
 /// and Cancelled. Voxels of sources without a place lie in a grid of `voxel_size` (default 1) with
 /// its corner at `origin` (default 0). Voxels get the
-/// labels that LabelCollector gives them. Splats set voxels by `splats`; their grid is placed
-/// around the boxes of the splats, as for a mesh.
+/// labels that LabelCollector gives them, and the channels that ChannelCollector does. Splats set
+/// voxels by `splats`; their grid is placed around the boxes of the splats, as for a mesh.
 ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options, Work work = {});
 
 }  // namespace voxdag

@@ -146,6 +146,8 @@ class JoinedSource final : public VoxelSource {
         throw Error("", "", "is joined with others: all of them must hold splats, or none");
       if (source.has_labels() != has_labels())
         throw Error("", "", "is joined with others: all of them must have labels, or none");
+      if (source.channels() != channels())
+        throw Error("", "", "is joined with others: all of them must have the same channels");
       if (source.has_labels()) add_names(source.label_names());
       has_colors_ |= source.has_colors();
       if (!has_points()) add_grid(i);
@@ -157,6 +159,7 @@ class JoinedSource final : public VoxelSource {
   bool has_splats() const override { return sources_[0]->has_splats(); }
   bool has_labels() const override { return sources_[0]->has_labels(); }
   std::map<Label, std::string> label_names() const override { return label_names_; }
+  std::vector<ChannelSpec> channels() const override { return sources_[0]->channels(); }
   bool has_palette() const override {
     return std::all_of(sources_.begin(), sources_.end(),
                        [](const auto& source) { return source->has_palette(); });

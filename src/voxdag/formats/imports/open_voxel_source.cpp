@@ -40,7 +40,7 @@ std::unique_ptr<VoxelSource> open_map(const Path& path, const Options& options) 
 constexpr SourceFormat kSourceFormats[] = {
     {".npy", true,
      [](const Path& path, const Options& options) {
-       return open_npy(path, options.threshold, options.labels);
+       return open_npy(path, options.threshold, options.labels, options.channels);
      }},
     {".xyz", false, open_text},
     {".txt", false, open_text},
@@ -50,7 +50,7 @@ constexpr SourceFormat kSourceFormats[] = {
     {".xyzrgb", false, open_text},
     {".ply", false,
      [](const Path& path, const Options& options) {
-       return open_ply_points(path, options.splats_are_points, options.labels);
+       return open_ply_points(path, options.splats_are_points, options.labels, options.channels);
      }},
     {".splat", false,
      [](const Path& path, const Options& options) {
@@ -66,7 +66,7 @@ constexpr SourceFormat kSourceFormats[] = {
      }},
     {".las", false,
      [](const Path& path, const Options& options) {
-       return open_las_points(path, options.labels);
+       return open_las_points(path, options.labels, options.channels);
      }},
     {".pcd", false,
      [](const Path& path, const Options& options) {
@@ -75,19 +75,19 @@ constexpr SourceFormat kSourceFormats[] = {
     {".binvox", false, [](const Path& path, const Options&) { return open_binvox(path); }},
     {".nrrd", true,
      [](const Path& path, const Options& options) {
-       return open_nrrd(path, options.threshold, options.labels);
+       return open_nrrd(path, options.threshold, options.labels, options.channels);
      }},
     {".nhdr", true,
      [](const Path& path, const Options& options) {
-       return open_nrrd(path, options.threshold, options.labels);
+       return open_nrrd(path, options.threshold, options.labels, options.channels);
      }},
     {".nii", true,
      [](const Path& path, const Options& options) {
-       return open_nifti(path, options.threshold, options.labels);
+       return open_nifti(path, options.threshold, options.labels, options.channels);
      }},
     {".nii.gz", true,
      [](const Path& path, const Options& options) {
-       return open_nifti(path, options.threshold, options.labels);
+       return open_nifti(path, options.threshold, options.labels, options.channels);
      }},
     {".tif", true,
      [](const Path& path, const Options& options) {
@@ -216,6 +216,11 @@ std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& 
     throw Error(path.string(), "",
                 source->has_splats() ? "holds splats, which have no labels"
                                      : "has a format of which no labels are read");
+  if (!options.channels.empty() && (source->has_splats() || source->channels().empty()))
+    throw Error(path.string(), "",
+                source->has_splats() ? "holds splats, which have no channels: --points reads their "
+                                       "centres"
+                                     : "has a format of which no channels are read");
   return options.use_placement ? with_file_placement(path, std::move(source)) : std::move(source);
 }
 

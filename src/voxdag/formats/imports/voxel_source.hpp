@@ -17,6 +17,7 @@
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/formats/imports/point_locator.hpp"
+#include "voxdag/stored/attributes/channels.hpp"
 
 namespace voxdag {
 
@@ -39,6 +40,8 @@ struct VoxelBatch {
   std::span<const Splat> splats = {};
   /// One for each place; empty if the source has no labels.
   std::span<const Label> labels = {};
+  /// For each place, a value of each of the source's channels; empty if it has none.
+  std::span<const double> channels = {};
 };
 using VisitBatch = std::function<void(const VoxelBatch&)>;
 
@@ -57,6 +60,8 @@ class VoxelSource {
   virtual bool has_labels() const { return false; }
   /// Returns the names that the file or its format gives to labels, also to those without places.
   virtual std::map<Label, std::string> label_names() const { return {}; }
+  /// Returns the channels of the places: those of VoxelSourceOptions::channels, in their order.
+  virtual std::vector<ChannelSpec> channels() const { return {}; }
   /// Returns how exact the coordinates of points are.
   virtual CoordinateError coordinate_error() const { return {}; }
   /// Returns whether the colours come from an artist's palette. The import keeps these without
@@ -83,6 +88,14 @@ class VoxelSource {
 /// labels.
 using LabelRequest = std::optional<std::string>;
 
+/// A channel to read.
+struct ChannelRequest {
+  std::string field;  ///< The field of points; for volumes of numbers "value".
+  std::string name;   ///< Of the channel. Empty: the field, with '_' for what names cannot have.
+  double bound = 0;   ///< Above 0: the channel is f32 with this bound.
+  std::optional<ChannelKind> kind = {};  ///< Default: that of the field's numbers.
+};
+
 struct VoxelSourceOptions {
   /// For volumes of numbers: values that are at least this set their voxel. Without it, all values
   /// other than 0 do.
@@ -92,6 +105,7 @@ struct VoxelSourceOptions {
   std::string grid = {};  ///< For .vdb files: the name of the grid to read; empty: see open_vdb().
   bool splats_are_points = false;  ///< Reads Gaussian splats as points: their centres.
   LabelRequest labels = {};
+  std::vector<ChannelRequest> channels = {};
   Work work = {};  ///< Its budget counts what is unpacked.
 };
 
@@ -105,8 +119,8 @@ bool is_slice_folder(const std::filesystem::path& path);
 
 /// Opens a file by the end of its name, or a folder of slices. Files that gzip or Zstandard have
 /// compressed and pipes are unpacked first (InputFile). Throws Error for formats that are
-/// not known, for options that the format does not have, and for labels that the file does not
-/// have.
+/// not known, for options that the format does not have, and for labels and channels that the file
+/// does not have.
 std::unique_ptr<VoxelSource> open_voxel_source(const std::filesystem::path& path,
                                                const VoxelSourceOptions& options = {});
 

@@ -4,8 +4,10 @@
 #include <bit>
 #include <optional>
 
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/attributes/encode_channels.hpp"
 #include "voxdag/stored/attributes/encode_material_ids.hpp"
 #include "voxdag/stored/attributes/numbered_cell.hpp"
 #include "voxdag/stored/attributes/page_reader.hpp"
@@ -118,6 +120,33 @@ class Coarsener {
   std::uint64_t done_ = 0;
 };
 
+/// Calls add(number) with the number of a cell, and those of all cells below it down to `finest`.
+template <class Add>
+void visit_numbers(const ColoredDagView& fine, const NumberedCell& cell, int finest,
+                   const Add& add) {
+  add(cell.number);
+  if (cell.level == finest) return;
+  for (std::uint32_t left = children_of(fine.dag, cell); left != 0; left &= left - 1)
+    visit_numbers(fine, child_of(fine.dag, fine.attributes.index, cell, std::countr_zero(left)),
+                  finest, add);
+}
+
+/// Returns the channels of the cells that stay, with the values that they have.
+CellChannels coarsen_channels(const ColoredDagView& fine, const CellIndex& index, Work work) {
+  const ChannelsView& channels = fine.attributes.channels;
+  std::vector<EncodedChannel> coarse;
+  for (std::size_t i = 0; i < channels.count(); ++i) {
+    const ChannelView channel = channels[i];
+    CountedVector<std::int32_t> codes(work.memory);
+    visit_numbers(fine, {}, index.finest_level, [&](std::uint64_t number) {
+      work.poll_seldom(number);
+      codes.push_back(channel_code(channel.kind, channel.read(number)));
+    });
+    coarse.push_back(encode_channel(spec_of(channel), codes, work));
+  }
+  return join_channels(index.cells, coarse);
+}
+
 }  // namespace
 
 DagAttributes coarsen_attributes(const ColoredDagView& fine, const SvdagView& coarse,
@@ -129,13 +158,15 @@ DagAttributes coarsen_attributes(const ColoredDagView& fine, const SvdagView& co
   const MemoryReservation index_bytes(work.memory, result.index.view().bytes());
   if (finest <= coarse.levels) {
     // The cells with attributes, and so their numbers, are those of the fine grid.
-    const auto& [fine_index, colors, normals, materials] = fine.attributes;
+    const auto& [fine_index, colors, normals, materials, channels] = fine.attributes;
     result.colors = {copy_of(colors, work.memory), colors.precision};
     result.normals = {copy_of(normals, work.memory), normals.precision};
     result.materials = {copy_of(materials, work.memory), materials.materials};
+    result.channels.words.assign(channels.words, channels.words + channels.bytes() / 8);
     return result;
   }
   Coarsener(fine, result.index, bounds, work).fill(result);
+  result.channels = coarsen_channels(fine, result.index, work);
   return result;
 }
 

@@ -20,14 +20,15 @@ struct DagAttributes {
   CellIndex index;
   ValuePages colors, normals;
   MaterialIds materials;
+  CellChannels channels;
   ValueErrors color_errors, normal_errors;
 
   DagAttributesView view() const {
-    return {index.view(), colors.view(), normals.view(), materials.view()};
+    return {index.view(), colors.view(), normals.view(), materials.view(), channels.view()};
   }
   std::uint64_t bytes() const {
     return index.view().bytes() + colors.view().bytes() + normals.view().bytes() +
-           materials.view().bytes();
+           materials.view().bytes() + channels.view().bytes();
   }
 };
 

@@ -1,5 +1,8 @@
 #pragma once
-/// Reads the colours, normals and materials of many voxels, one after the other.
+/// Reads the colours, normals, materials and channels of many voxels, one after the other.
+#include <span>
+#include <vector>
+
 #include "voxdag/core/orientation.hpp"
 #include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/stored/attributes/page_reader.hpp"
@@ -26,11 +29,16 @@ class LookReader {
         normals_(look.dag.attributes.normals),
         has_colors_(look.has_colors()),
         has_normals_(look.has_normals()),
-        has_materials_(look.has_materials()) {}
+        has_materials_(look.has_materials()) {
+    for (std::size_t i = 0; i < look.dag.attributes.channels.count(); ++i)
+      channels_.push_back(look.dag.attributes.channels[i]);
+  }
 
   bool has_colors() const { return has_colors_; }
   bool has_normals() const { return has_normals_; }
   bool has_materials() const { return has_materials_; }
+  const std::vector<ChannelView>& channels() const { return channels_; }
+  /// Returns whether there are neither colours nor normals nor materials.
   bool is_empty() const { return !has_colors_ && !has_normals_ && !has_materials_; }
 
   /// Returns what is stored for the cell `cell` of `level`.
@@ -42,6 +50,16 @@ class LookReader {
       result.normal[axis] =
           normal[orientation_.source_axis[axis]] * (orientation_.is_flipped[axis] ? -1.0f : 1.0f);
     return result;
+  }
+
+  /// Sets `values`, one for each of channels(), to those that are stored for the cell; 0 if it is
+  /// not in the look.
+  void read_channels(Vec3i cell, int level, std::span<double> values) const {
+    if (is_turned_) cell = source_cell(orientation_, cell, level);
+    std::uint64_t number = 0;
+    const bool is_stored = find_number(look_.dag, cell, level, number);
+    for (std::size_t i = 0; i < channels_.size(); ++i)
+      values[i] = is_stored ? channels_[i].read(number) : 0;
   }
 
  private:
@@ -88,6 +106,7 @@ class LookReader {
   bool is_turned_;
   PageReader colors_, normals_;
   bool has_colors_, has_normals_, has_materials_;
+  std::vector<ChannelView> channels_;
 };
 
 }  // namespace voxdag

@@ -1,6 +1,7 @@
 #pragma once
-/// The colours, normals and materials of a DAG's cells.
+/// The colours, normals, materials and channels of a DAG's cells.
 #include "voxdag/stored/attributes/cell_index_lookup.hpp"
+#include "voxdag/stored/attributes/channels.hpp"
 #include "voxdag/stored/attributes/material_ids.hpp"
 #include "voxdag/stored/attributes/value_overlay.hpp"
 #include "voxdag/stored/attributes/value_pages.hpp"
@@ -13,11 +14,15 @@ struct DagAttributesView {
   ValuePagesView colors;      ///< sRGB encoded; empty: none.
   ValuePagesView normals;     ///< See unpack_normal(); empty: none.
   MaterialIdsView materials;  ///< Empty: none.
+  ChannelsView channels{};    ///< Empty: none. Kernels do not read them.
 
   VOXDAG_HD bool has_colors() const { return !colors.is_empty(); }
   VOXDAG_HD bool has_normals() const { return !normals.is_empty(); }
   VOXDAG_HD bool has_materials() const { return !materials.is_empty(); }
-  VOXDAG_HD bool is_empty() const { return !has_colors() && !has_normals() && !has_materials(); }
+  VOXDAG_HD bool has_channels() const { return !channels.is_empty(); }
+  VOXDAG_HD bool is_empty() const {
+    return !has_colors() && !has_normals() && !has_materials() && !has_channels();
+  }
 };
 
 /// A DAG with the attributes of its cells. If the DAG is being edited, `dag` is the DAG to which

@@ -7,6 +7,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <exception>
 #include <optional>
@@ -103,11 +104,19 @@ class GridFiller {
         look_(options.look_reader()),
         memory_(options.memory, 0),
         density_(openvdb::FloatGrid::create(0)),
-        colors_(look_.has_colors() ? openvdb::Vec3SGrid::create() : nullptr) {}
+        colors_(look_.has_colors() ? openvdb::Vec3SGrid::create() : nullptr) {
+    for (std::size_t i = 0; i < look_.channels().size(); ++i) {
+      channels_.push_back(openvdb::FloatGrid::create(0));
+      const std::string name(look_.channels()[i].name());
+      channels_.back()->setName(name == "density" || name == "Cd" ? "channel_" + name : name);
+      channel_access_.push_back(channels_.back()->getAccessor());
+    }
+  }
 
   std::vector<openvdb::GridBase::Ptr> fill(const Grid& grid) {
     whole_ = count_for_export("", voxels_, window_, 0, options_);
-    if (const SvdagView* dag = voxels_.dag(); dag != nullptr && !colors_ && !dag->is_empty())
+    if (const SvdagView* dag = voxels_.dag();
+        dag != nullptr && !colors_ && channels_.empty() && !dag->is_empty())
       add_cells(*dag, FullNodes(*dag), 0, 0, {0, 0, 0});
     else
       voxels_.for_each_leaf_block(window_,
@@ -119,6 +128,7 @@ class GridFiller {
       colors_->setName("Cd");
       grids.push_back(colors_);
     }
+    grids.insert(grids.end(), channels_.begin(), channels_.end());
     for (const openvdb::GridBase::Ptr& filled : grids) filled->setTransform(transform_of(grid));
     return grids;
   }
@@ -136,6 +146,8 @@ class GridFiller {
   void count_nodes(const openvdb::Coord& at, std::int32_t side) {
     std::uint64_t bytes = bytes_of_new_nodes(density_->tree(), at, side);
     if (colors_) bytes += bytes_of_new_nodes(colors_->tree(), at, side);
+    for (const openvdb::FloatGrid::Ptr& channel : channels_)
+      bytes += bytes_of_new_nodes(channel->tree(), at, side);
     memory_.resize(memory_.bytes() + bytes);
   }
 
@@ -151,6 +163,11 @@ class GridFiller {
           origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
       const openvdb::Coord at(voxel.x, voxel.y, voxel.z);
       leaf->setValueOn(at, 1);
+      if (!channels_.empty()) {
+        look_.read_channels(voxel, voxels_.levels(), values_);
+        for (std::size_t i = 0; i < channels_.size(); ++i)
+          channel_access_[i].setValueOn(at, static_cast<float>(values_[i]));
+      }
       if (!colors_) continue;
       const Value8 color = look_.read(voxel, voxels_.levels()).color;
       const auto linear = [](std::uint8_t code) {
@@ -208,6 +225,9 @@ class GridFiller {
   openvdb::FloatGrid::Accessor density_access_ = density_->getAccessor();
   std::optional<openvdb::Vec3SGrid::Accessor> color_access_ =
       colors_ ? std::optional(colors_->getAccessor()) : std::nullopt;
+  std::vector<openvdb::FloatGrid::Ptr> channels_;
+  std::vector<openvdb::FloatGrid::Accessor> channel_access_;
+  std::array<double, kMaxChannels> values_{};
   std::uint64_t whole_ = 0, done_ = 0, blocks_ = 0;
 };
 

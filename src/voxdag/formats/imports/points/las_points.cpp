@@ -7,6 +7,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/channels/channel_request.hpp"
 #include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/load_value.hpp"
@@ -167,9 +168,15 @@ struct LasLabelField {
 constexpr LasLabelField kLabelFieldsOfLas[] = {
     {"classification", 15, 16, 1}, {"user_data", 17, 17, 1}, {"point_source_id", 18, 20, 2}};
 
+/// The fields of channels: the intensity, 16 bits at this offset, and those of labels.
+constexpr std::size_t kIntensity = 12;
+constexpr std::string_view kChannelFieldsOfLas[] = {"intensity", "classification", "user_data",
+                                                    "point_source_id"};
+
 class LasPoints : public VoxelSource {
  public:
-  LasPoints(const std::filesystem::path& path, const LabelRequest& labels)
+  LasPoints(const std::filesystem::path& path, const LabelRequest& labels,
+            const std::vector<ChannelRequest>& channels)
       : name_(path.string()),
         file_(path, MappedFile::Access::kSequential),
         header_(parse_las_header(file_.text(), name_)),
@@ -179,6 +186,11 @@ class LasPoints : public VoxelSource {
       label_ = &kLabelFieldsOfLas[find_label_field(
           *labels, std::size(kLabelFieldsOfLas),
           [](std::size_t i) { return kLabelFieldsOfLas[i].name; })];
+    const auto name_of = [](std::size_t i) { return kChannelFieldsOfLas[i]; };
+    channel_fields_ = find_channel_fields(channels, std::size(kChannelFieldsOfLas), name_of);
+    for (std::size_t i = 0; i < channels.size(); ++i)
+      channels_.push_back(channel_spec(
+          channels[i], is_wide(channel_fields_[i]) ? ChannelKind::kU16 : ChannelKind::kU8));
   }
 
   bool has_points() const override { return true; }
@@ -191,6 +203,7 @@ class LasPoints : public VoxelSource {
         names.emplace(static_cast<Label>(i), kClasses[i]);
     return names;
   }
+  std::vector<ChannelSpec> channels() const override { return channels_; }
   /// Counts the rounding of add(): a product and a sum.
   CoordinateError coordinate_error() const override {
     CoordinateError error{0x1p-51, {}};
@@ -232,13 +245,21 @@ class LasPoints : public VoxelSource {
     return header_.minor_version > 0 && (flags & 128) != 0;
   }
 
-  Label label_in(const char* record) const {
+  static bool is_wide(std::size_t channel_field) {
+    return channel_field == 0 || kLabelFieldsOfLas[channel_field - 1].bytes == 2;
+  }
+  double channel_in(const char* record, std::size_t field) const {
+    if (field == 0) return load_value<std::uint16_t>(record + kIntensity);
+    return static_cast<double>(label_in(record, kLabelFieldsOfLas[field - 1]));
+  }
+
+  Label label_in(const char* record, const LasLabelField& field) const {
     const bool is_long = header_.format >= 6;
-    const char* const at = record + (is_long ? label_->long_offset : label_->offset);
-    if (label_->bytes == 2) return load_value<std::uint16_t>(at);
+    const char* const at = record + (is_long ? field.long_offset : field.offset);
+    if (field.bytes == 2) return load_value<std::uint16_t>(at);
     const auto value = load_value<std::uint8_t>(at);
     // In formats 0 to 5, bits 5 to 7 are flags; in version 1.0 they were not.
-    const bool has_flags = label_ == &kLabelFieldsOfLas[0] && !is_long && header_.minor_version > 0;
+    const bool has_flags = &field == &kLabelFieldsOfLas[0] && !is_long && header_.minor_version > 0;
     return has_flags ? value & 31 : value;
   }
 
@@ -258,7 +279,8 @@ class LasPoints : public VoxelSource {
     for (int axis = 0; axis < 3; ++axis)
       point[axis] =
           load_value<std::int32_t>(record + 4 * axis) * header_.scale[axis] + header_.offset[axis];
-    if (has_labels()) points.add_label(label_in(record));
+    if (has_labels()) points.add_label(label_in(record, *label_));
+    for (const std::size_t field : channel_fields_) points.add_channel(channel_in(record, field));
     if (!has_colors()) return points.add(point);
     Rgb8 color;
     for (std::size_t c = 0; c < 3; ++c)
@@ -273,13 +295,16 @@ class LasPoints : public VoxelSource {
   int color_;  ///< Offset in a record; 0: none.
   int color_shift_ = 0;
   const LasLabelField* label_ = nullptr;
+  std::vector<ChannelSpec> channels_;
+  std::vector<std::size_t> channel_fields_;  ///< In kChannelFieldsOfLas.
 };
 
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_las_points(const std::filesystem::path& path,
-                                             const LabelRequest& labels) {
-  return std::make_unique<LasPoints>(path, labels);
+                                             const LabelRequest& labels,
+                                             const std::vector<ChannelRequest>& channels) {
+  return std::make_unique<LasPoints>(path, labels, channels);
 }
 
 }  // namespace voxdag

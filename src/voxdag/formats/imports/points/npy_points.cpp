@@ -10,6 +10,7 @@
 #include "voxdag/core/printable.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/channels/channel_request.hpp"
 #include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/npy_type.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
@@ -132,9 +133,10 @@ std::vector<Column> find_columns(const std::vector<Field>& fields,
 
 class NpyPoints : public VoxelSource {
  public:
-  NpyPoints(const std::filesystem::path& path, const NpyStart& start, const LabelRequest& labels)
+  NpyPoints(const std::filesystem::path& path, const NpyStart& start, const LabelRequest& labels,
+            const std::vector<ChannelRequest>& channels)
       : name_(path.string()), file_(path, MappedFile::Access::kSequential), begin_(start.data) {
-    find_rows(start.header, labels);
+    find_rows(start.header, labels, channels);
     is_real_ = std::any_of(places_.begin(), places_.end(),
                            [](const Column& column) { return is_real(column.type.value); });
     if (!colors_.empty()) find_color_scale();
@@ -150,6 +152,7 @@ class NpyPoints : public VoxelSource {
   bool has_points() const override { return is_real_; }
   bool has_colors() const override { return !colors_.empty(); }
   bool has_labels() const override { return label_.has_value(); }
+  std::vector<ChannelSpec> channels() const override { return channels_; }
   std::vector<std::string> warnings() const override { return warnings_; }
   CoordinateError coordinate_error() const override {
     CoordinateError error;
@@ -167,6 +170,7 @@ class NpyPoints : public VoxelSource {
     for (std::uint64_t i = 0; i < rows_; ++i, row += row_step_) {
       const Vec3d place{places_[0].load(row), places_[1].load(row), places_[2].load(row)};
       if (label_) voxels.add_label(label_of(label_->load(row)));
+      for (const Column& column : channel_columns_) voxels.add_channel(column.load(row));
       if (colors_.empty())
         voxels.add(place);
       else
@@ -185,11 +189,12 @@ class NpyPoints : public VoxelSource {
             found);
   }
 
-  void find_rows(const NpyHeader& header, const LabelRequest& labels) {
+  void find_rows(const NpyHeader& header, const LabelRequest& labels,
+                 const std::vector<ChannelRequest>& channels) {
     if (header.shape.empty()) refuse("a single number");
     rows_ = header.shape[0];
     if (header.dtype.starts_with('[')) {
-      find_fields(header, labels);
+      find_fields(header, labels, channels);
     } else {
       const std::optional<NpyType> type = parse_npy_type(header.dtype);
       if (!type || header.dtype.ends_with("b1")) refuse("of type " + in_quotes(header.dtype));
@@ -204,6 +209,8 @@ class NpyPoints : public VoxelSource {
       row_bytes_ = 3 * item;
       row_step_ = is_by_columns_ ? item : row_bytes_;
       if (labels) throw Error(name_, "header", "has rows without fields, so without labels");
+      if (!channels.empty())
+        throw Error(name_, "header", "has rows without fields, so without channels");
       if (rows_ > kMaxRows) refuse("of " + std::to_string(rows_) + " rows");
       for (std::uint64_t axis = 0; axis < 3; ++axis)
         places_.push_back({*type, axis * item * (is_by_columns_ ? rows_ : 1)});
@@ -211,7 +218,8 @@ class NpyPoints : public VoxelSource {
     if (rows_ > kMaxRows) refuse("of " + std::to_string(rows_) + " rows");
   }
 
-  void find_fields(const NpyHeader& header, const LabelRequest& labels) {
+  void find_fields(const NpyHeader& header, const LabelRequest& labels,
+                   const std::vector<ChannelRequest>& channels) {
     if (header.shape.size() != 1) refuse("a structured array of more than one axis");
     const auto fields = FieldParser(header.dtype).parse(row_bytes_);
     if (!fields) refuse("of type " + in_quotes(header.dtype));
@@ -221,9 +229,19 @@ class NpyPoints : public VoxelSource {
     if (places_.empty()) refuse("of type " + in_quotes(header.dtype));
     colors_ = find_columns(*fields, {"color", "colors", "rgb", "rgba"},
                            {{"red", "green", "blue"}, {"r", "g", "b"}});
+    const auto name_of = [&](std::size_t i) { return (*fields)[i].name; };
+    const std::vector<std::size_t> found = find_channel_fields(channels, fields->size(), name_of);
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      const Field& field = (*fields)[found[i]];
+      if (field.items != 1)
+        throw Error(
+            name_, "header",
+            "the field " + in_quotes(field.name) + " is not one number in each row, so no channel");
+      channels_.push_back(channel_spec(channels[i], kind_of(field.type.value)));
+      channel_columns_.push_back({field.type, field.offset});
+    }
     if (!labels) return;
-    const Field& field = (*fields)[find_label_field(
-        *labels, fields->size(), [&](std::size_t i) { return (*fields)[i].name; })];
+    const Field& field = (*fields)[find_label_field(*labels, fields->size(), name_of)];
     if (field.items != 1) throw Error(name_, "header", "the labels are not one number in each row");
     label_ = Column{field.type, field.offset};
   }
@@ -258,6 +276,8 @@ class NpyPoints : public VoxelSource {
   bool is_real_ = false;
   std::vector<Column> places_, colors_;  ///< Three, or no colours.
   std::optional<Column> label_;
+  std::vector<ChannelSpec> channels_;
+  std::vector<Column> channel_columns_;
   double color_scale_ = 1.0 / 255;  ///< Maps a component to 0..1.
   std::vector<std::string> warnings_;
 };
@@ -265,8 +285,9 @@ class NpyPoints : public VoxelSource {
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_npy_points(const std::filesystem::path& path,
-                                             const NpyStart& start, const LabelRequest& labels) {
-  return std::make_unique<NpyPoints>(path, start, labels);
+                                             const NpyStart& start, const LabelRequest& labels,
+                                             const std::vector<ChannelRequest>& channels) {
+  return std::make_unique<NpyPoints>(path, start, labels, channels);
 }
 
 }  // namespace voxdag

@@ -4,6 +4,7 @@
 
 #include "voxdag/formats/export_placement.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/channels/channel_request.hpp"
 #include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
@@ -17,11 +18,22 @@ namespace {
 
 /// Three coordinates, then three components of a colour if the file has them, then the opacity, the
 /// scales and the rotation of a splat if the vertices are splats, then the label if one is read.
-using Values = std::array<double, 15>;
+/// The channels follow.
+constexpr std::size_t kMaxColumns = 15 + kMaxChannels;
+using Values = std::array<double, kMaxColumns>;
+
+/// Returns the kind of channel for numbers of a type.
+ChannelKind kind_of_property(PlyType type) {
+  constexpr ValueType kTypes[] = {ValueType::kInt8,   ValueType::kUint8, ValueType::kInt16,
+                                  ValueType::kUint16, ValueType::kInt32, ValueType::kUint32,
+                                  ValueType::kFloat,  ValueType::kDouble};
+  return kind_of(kTypes[static_cast<std::size_t>(type)]);
+}
 
 class PlyPoints : public VoxelSource {
  public:
-  PlyPoints(const std::filesystem::path& path, bool splats_are_points, const LabelRequest& labels)
+  PlyPoints(const std::filesystem::path& path, bool splats_are_points, const LabelRequest& labels,
+            const std::vector<ChannelRequest>& channels)
       : file_(path, MappedFile::Access::kSequential),
         source_{file_.text(), path.string(), {}, &file_, {}},
         header_(parse_ply_header(source_, PlyUse::kPoints)) {
@@ -44,11 +56,22 @@ class PlyPoints : public VoxelSource {
       columns_.insert(columns_.end(), splat.begin(), splat.end());
     }
     has_splats_ = columns_.size() > first_splat_column_;
+    const auto& properties = vertex().properties;
+    const auto name_of = [&](std::size_t i) { return properties[i].name; };
     if (labels) {
-      const auto& properties = vertex().properties;
-      const std::size_t found = find_label_field(*labels, properties.size(),
-                                                 [&](std::size_t i) { return properties[i].name; });
       has_labels_ = true;
+      columns_.push_back(static_cast<int>(find_label_field(*labels, properties.size(), name_of)));
+    }
+    first_channel_column_ = columns_.size();
+    if (channels.size() > kMaxChannels)
+      throw Error(path.string(), "", "at most 16 channels are read");
+    for (const std::size_t found : find_channel_fields(channels, properties.size(), name_of)) {
+      if (properties[found].count_type)
+        throw Error(path.string(), "",
+                    "property " + in_quotes(properties[found].name) +
+                        " is a list, and a channel has one number");
+      channels_.push_back(
+          channel_spec(channels[channels_.size()], kind_of_property(properties[found].type)));
       columns_.push_back(static_cast<int>(found));
     }
     if (!is_harmonic && std::any_of(color.begin(), color.begin() + 3,
@@ -59,6 +82,7 @@ class PlyPoints : public VoxelSource {
   bool has_points() const override { return true; }
   bool has_splats() const override { return has_splats_; }
   bool has_labels() const override { return has_labels_; }
+  std::vector<ChannelSpec> channels() const override { return channels_; }
   std::optional<Grid> grid() const override { return grid_; }
   std::optional<char> up() const override { return up_; }
   bool has_colors() const override { return first_splat_column_ > 3; }
@@ -140,7 +164,9 @@ class PlyPoints : public VoxelSource {
       points.add_splat(splat_of_logarithms({value(4), value(5), value(6), value(7)},
                                            {value(1), value(2), value(3)}, value(0)));
     }
-    if (has_labels_) points.add_label(label_of(values[columns_.size() - 1]));
+    if (has_labels_) points.add_label(label_of(values[first_channel_column_ - 1]));
+    for (std::size_t c = first_channel_column_; c < columns_.size(); ++c)
+      points.add_channel(values[c]);
     if (!has_colors()) return points.add(point);
     Rgb8 color;
     for (std::size_t c = 0; c < 3; ++c)
@@ -241,6 +267,8 @@ class PlyPoints : public VoxelSource {
   Orientation turn_;
   std::vector<int> columns_;  ///< The properties of the values.
   std::size_t first_splat_column_ = 3;
+  std::size_t first_channel_column_ = 0;
+  std::vector<ChannelSpec> channels_;
   bool has_splats_ = false, has_labels_ = false;
   std::array<double, 3> color_scales_{};
   double color_offset_ = 0;
@@ -249,9 +277,10 @@ class PlyPoints : public VoxelSource {
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_ply_points(const std::filesystem::path& path,
-                                             bool splats_are_points, const LabelRequest& labels) {
+                                             bool splats_are_points, const LabelRequest& labels,
+                                             const std::vector<ChannelRequest>& channels) {
   if (auto packed = open_packed_ply(path, splats_are_points)) return packed;
-  return std::make_unique<PlyPoints>(path, splats_are_points, labels);
+  return std::make_unique<PlyPoints>(path, splats_are_points, labels, channels);
 }
 
 }  // namespace voxdag

@@ -13,8 +13,8 @@ inline constexpr const char* kCompressedLas =
 /// fields x, y and z, or one of three items called voxel, position or xyz. Integers are voxels,
 /// real numbers are points. The fields red, green and blue, or color, are colours.
 std::unique_ptr<VoxelSource> open_npy_points(const std::filesystem::path& path,
-                                             const NpyStart& start,
-                                             const LabelRequest& labels = {});
+                                             const NpyStart& start, const LabelRequest& labels = {},
+                                             const std::vector<ChannelRequest>& channels = {});
 
 /// Opens a text of points: three numbers in each line, and perhaps more. Blanks, tabs, commas,
 /// semicolons or quotes separate them; # and // begin comments. At most 1 MiB per line.
@@ -41,7 +41,8 @@ std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path,
 /// counts that need a longer file, truncation before the end of the vertices.
 std::unique_ptr<VoxelSource> open_ply_points(const std::filesystem::path& path,
                                              bool splats_are_points = false,
-                                             const LabelRequest& labels = {});
+                                             const LabelRequest& labels = {},
+                                             const std::vector<ChannelRequest>& channels = {});
 
 /// Opens a compressed PLY file of PlayCanvas, whose vertices have the property packed_position;
 /// returns null for others. Ignores the spherical harmonics above the first. Throws Error: see
@@ -77,11 +78,12 @@ std::unique_ptr<VoxelSource> open_sog(const std::filesystem::path& path,
 /// component in the file exceeds 255, all have 8 bits; otherwise the upper 8 of 16 bits are read.
 ///
 /// Labels are the classification, with the names of the specification, or the field user_data or
-/// point_source_id.
+/// point_source_id. Channels are intensity and these fields.
 ///
 /// Throws Error with the byte: compressed files, malformed headers, counts that need a longer file.
 std::unique_ptr<VoxelSource> open_las_points(const std::filesystem::path& path,
-                                             const LabelRequest& labels = {});
+                                             const LabelRequest& labels = {},
+                                             const std::vector<ChannelRequest>& channels = {});
 
 /// Opens the points of a PCD file, versions 0.5 to 0.7, with DATA ascii, binary or
 /// binary_compressed. x, y and z may have any type; numbers of text are float64. Compressed

@@ -11,6 +11,8 @@
 #include <string_view>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/printable.hpp"
+#include "voxdag/formats/imports/channels/channel_request.hpp"
 #include "voxdag/formats/imports/value_type.hpp"
 #include "voxdag/formats/imports/volumes/gzip_stream.hpp"
 
@@ -99,11 +101,15 @@ class DenseSource : public VoxelSource {
       throw Error(file_.path.string(), ErrorPlace::byte(file_.data.text().size()),
                   "truncated: the data begin at byte " + std::to_string(file_.begin));
     if (is_raw()) check_length();
-    if (file_.volume.has_labels && (file_.volume.channels > 1 || file_.volume.repeats > 1))
+    file_.volume.has_values = !file_.channels.empty();
+    if ((file_.volume.has_labels || file_.volume.has_values) &&
+        (file_.volume.channels > 1 || file_.volume.repeats > 1))
       throw Error(file_.path.string(), "header",
-                  file_.volume.has_colors() ? "holds colours, not labels"
-                                            : "holds several layers, and labels need one value for "
-                                              "each voxel");
+                  file_.volume.has_colors()
+                      ? "holds colours, not labels or values"
+                      : "holds several layers, and labels and channels need one value for each "
+                        "voxel");
+    check_value_channel();
     if (file_.volume.channels == 4 && file_.volume.has_colors())
       with_bytes([&](const FillBytes& fill) {
         file_.volume.has_opaque_alpha = has_opaque_alpha(file_.volume, fill);
@@ -115,6 +121,12 @@ class DenseSource : public VoxelSource {
   bool has_colors() const override { return file_.volume.has_colors(); }
   bool has_labels() const override { return file_.volume.has_labels; }
   std::map<Label, std::string> label_names() const override { return file_.label_names; }
+  std::vector<ChannelSpec> channels() const override {
+    if (file_.channels.empty()) return {};
+    const bool is_scaled = file_.volume.slope != 1 || file_.volume.intercept != 0;
+    return {channel_spec(file_.channels[0],
+                         is_scaled ? ChannelKind::kF32 : kind_of(file_.volume.type))};
+  }
   std::optional<Grid> grid() const override { return file_.map.grid(); }
   bool has_place() const override { return file_.has_place; }
   std::vector<std::string> warnings() const override { return file_.warnings; }
@@ -132,6 +144,16 @@ class DenseSource : public VoxelSource {
     return file_.encoding == Encoding::kRaw || file_.encoding == Encoding::kPlanar;
   }
   std::string_view data() const { return file_.data.text().substr(file_.begin); }
+
+  void check_value_channel() const {
+    if (file_.channels.empty()) return;
+    if (file_.channels.size() > 1)
+      throw Error(file_.path.string(), "", "has one value for each voxel, so one channel");
+    if (file_.channels[0].field != "value")
+      throw Error(file_.path.string(), "",
+                  "has no field " + in_quotes(file_.channels[0].field) +
+                      ": the numbers of a volume are called 'value'");
+  }
 
   void check_length() {
     const std::uint64_t size = data().size(), needed = file_.volume.bytes();

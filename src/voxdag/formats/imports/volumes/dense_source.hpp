@@ -24,7 +24,8 @@ struct DenseFile {
   bool has_place = false;  ///< The file says where the volume lies, or how large its voxels are.
   std::vector<std::string> warnings = {};
   std::map<Label, std::string> label_names = {};
-  std::filesystem::path path = {};  ///< Of the data.
+  std::vector<ChannelRequest> channels = {};  ///< At most one.
+  std::filesystem::path path = {};            ///< Of the data.
   MappedFile data;
   std::uint64_t begin = 0;  ///< First byte of the data in the file.
   Encoding encoding = Encoding::kRaw;
@@ -33,9 +34,9 @@ struct DenseFile {
 };
 
 /// Returns the source of the file's volume. Throws Error if the file is shorter than raw data must
-/// be, if labels are wanted of colours or of several layers, and visit_all() if other data end
-/// early, are damaged, or do not end where they should. Leaves out bytes after raw data, with a
-/// warning.
+/// be, if labels or channels are wanted of colours or of several layers, and visit_all() if other
+/// data end early, are damaged, or do not end where they should. Leaves out bytes after raw data,
+/// with a warning.
 std::unique_ptr<VoxelSource> make_dense_source(DenseFile file);
 
 }  // namespace voxdag

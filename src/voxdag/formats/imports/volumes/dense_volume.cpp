@@ -78,6 +78,9 @@ void visit_values(const DenseVolume& volume, const FillBytes& fill, BatchedVoxel
       std::memcpy(&value, bytes + sizeof value * static_cast<std::size_t>(layer), sizeof value);
       if (!is_set(static_cast<Compared<T>>(value))) continue;
       if (volume.has_labels) voxels.add_label(label_in(volume, static_cast<Compared<T>>(value)));
+      if (volume.has_values)
+        voxels.add_channel(static_cast<double>(static_cast<Compared<T>>(value)) * volume.slope +
+                           volume.intercept);
       voxels.add(place_of(at));
       return;
     }

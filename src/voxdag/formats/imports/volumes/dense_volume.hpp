@@ -33,6 +33,7 @@ struct DenseVolume {
   /// colour has no alpha.
   std::optional<double> threshold;
   bool has_labels = false;        ///< Values of one channel are labels, too.
+  bool has_values = false;        ///< Values are passed on, as VoxelBatch::channels.
   bool has_opaque_alpha = false;  ///< Alpha is 255 everywhere: the greatest channel counts.
 
   bool has_colors() const { return channels > 1 && !is_list; }

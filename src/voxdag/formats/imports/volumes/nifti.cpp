@@ -265,8 +265,8 @@ std::string header_bytes(const std::filesystem::path& path, std::string_view tex
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_nifti(const std::filesystem::path& path,
-                                        std::optional<double> threshold,
-                                        const LabelRequest& labels) {
+                                        std::optional<double> threshold, const LabelRequest& labels,
+                                        const std::vector<ChannelRequest>& channels) {
   MappedFile mapping(path, MappedFile::Access::kSequential);
   const bool is_gzip = mapping.text().starts_with("\x1f\x8b");
   const NiftiHeader header = parse_nifti_header(path, header_bytes(path, mapping.text(), is_gzip));
@@ -277,6 +277,7 @@ std::unique_ptr<VoxelSource> open_nifti(const std::filesystem::path& path,
                  .may_have_more = header.has_more_volumes};
   file.volume.threshold = threshold;
   file.volume.has_labels = wants_labels(labels);
+  file.channels = channels;
   file.map = VolumeMap(path, header.volume.size, header.placement, file.warnings);
   file.has_place = header.placement.is_known;
   if (header.has_more_volumes)

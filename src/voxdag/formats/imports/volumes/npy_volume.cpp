@@ -14,7 +14,8 @@ namespace voxdag {
 namespace {
 
 std::unique_ptr<VoxelSource> open_volume(const std::filesystem::path& path, const NpyStart& start,
-                                         std::optional<double> threshold, bool has_labels) {
+                                         std::optional<double> threshold, bool has_labels,
+                                         const std::vector<ChannelRequest>& channels) {
   DenseVolume volume;
   volume.threshold = threshold;
   volume.has_labels = has_labels;
@@ -42,6 +43,7 @@ std::unique_ptr<VoxelSource> open_volume(const std::filesystem::path& path, cons
   grid.levels = levels_of(volume.size);
   return make_dense_source({.volume = volume,
                             .map = VolumeMap(grid),
+                            .channels = channels,
                             .path = path,
                             .data = MappedFile(path, MappedFile::Access::kSequential),
                             .begin = start.data,
@@ -51,12 +53,14 @@ std::unique_ptr<VoxelSource> open_volume(const std::filesystem::path& path, cons
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_npy(const std::filesystem::path& path,
-                                      std::optional<double> threshold, const LabelRequest& labels) {
+                                      std::optional<double> threshold, const LabelRequest& labels,
+                                      const std::vector<ChannelRequest>& channels) {
   const NpyStart start = read_npy_start(path);
   const std::size_t axes = start.header.shape.size();
-  if (axes == 3 || axes == 4) return open_volume(path, start, threshold, wants_labels(labels));
+  if (axes == 3 || axes == 4)
+    return open_volume(path, start, threshold, wants_labels(labels), channels);
   if (threshold) throw Error(path.string(), "", "has no values to compare with a threshold");
-  return open_npy_points(path, start, labels);
+  return open_npy_points(path, start, labels, channels);
 }
 
 }  // namespace voxdag

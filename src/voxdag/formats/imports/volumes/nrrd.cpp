@@ -38,8 +38,8 @@ void skip_to_data(const NrrdHeader& header, DenseFile& file) {
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
-                                       std::optional<double> threshold,
-                                       const LabelRequest& labels) {
+                                       std::optional<double> threshold, const LabelRequest& labels,
+                                       const std::vector<ChannelRequest>& channels) {
   MappedFile mapping(path, MappedFile::Access::kSequential);
   const NrrdHeader header = parse_nrrd_header(path, mapping.text());
   std::vector<std::string> warnings;
@@ -58,6 +58,7 @@ std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
                  .encoding = header.encoding};
   file.volume.threshold = threshold;
   file.volume.has_labels = wants_labels(labels);
+  file.channels = channels;
   skip_to_data(header, file);
   return make_dense_source(std::move(file));
 }

@@ -136,6 +136,8 @@ void VolumeMap::visit_cubes(const VoxelBatch& voxels, const VisitBatch& visit) c
       for (double y = lo.y; y < hi.y; ++y)
         for (double x = lo.x; x < hi.x; ++x) {
           if (!voxels.labels.empty()) out.add_label(voxels.labels[i]);
+          // A volume has one channel at most.
+          if (!voxels.channels.empty()) out.add_channel(voxels.channels[i]);
           if (voxels.colors.empty())
             out.add({x, y, z});
           else

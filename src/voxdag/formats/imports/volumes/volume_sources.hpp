@@ -1,6 +1,6 @@
 #pragma once
 /// Opens files of volumes. `threshold`: values that are at least this set their voxel; without it,
-/// all values other than 0 do.
+/// all values other than 0 do. `channels`: at most one, of the field "value".
 #include <string_view>
 
 #include "voxdag/formats/imports/voxel_source.hpp"
@@ -17,7 +17,8 @@ std::unique_ptr<VoxelSource> open_binvox(const std::filesystem::path& path);
 /// from the qform; both hold centres of voxels. Lengths are in the unit of the file.
 std::unique_ptr<VoxelSource> open_nifti(const std::filesystem::path& path,
                                         std::optional<double> threshold,
-                                        const LabelRequest& labels = {});
+                                        const LabelRequest& labels = {},
+                                        const std::vector<ChannelRequest>& channels = {});
 
 /// Opens an array of NumPy. Its shape decides: (N, 3) and (N) are points or voxels, as
 /// open_npy_points() says. (X, Y, Z) is a volume of bools, integers or real numbers; element
@@ -26,7 +27,8 @@ std::unique_ptr<VoxelSource> open_nifti(const std::filesystem::path& path,
 /// Volumes are in C or Fortran order. Throws Error if a threshold is given for points.
 std::unique_ptr<VoxelSource> open_npy(const std::filesystem::path& path,
                                       std::optional<double> threshold,
-                                      const LabelRequest& labels = {});
+                                      const LabelRequest& labels = {},
+                                      const std::vector<ChannelRequest>& channels = {});
 
 /// Opens a volume of NRRD, with its data in the same file or in one of the same folder: raw, gzip,
 /// ascii or hex. The first axis is x. A first axis of 3 or 4 values of uint8 is a colour: an RGBA
@@ -35,7 +37,8 @@ std::unique_ptr<VoxelSource> open_npy(const std::filesystem::path& path,
 /// voxel (0, 0, 0). Format: see nrrd_header.hpp.
 std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
                                        std::optional<double> threshold,
-                                       const LabelRequest& labels = {});
+                                       const LabelRequest& labels = {},
+                                       const std::vector<ChannelRequest>& channels = {});
 
 /// Opens a folder of PNG files of one size as a volume. The files whose names end in .png and do
 /// not begin with a dot are sorted by name, numbers by their value: slice_9.png comes before

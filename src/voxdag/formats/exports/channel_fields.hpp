@@ -1,0 +1,74 @@
+#pragma once
+/// Channels as fields of the rows of exported files.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "voxdag/stored/attributes/look_reader.hpp"
+
+namespace voxdag {
+
+/// The channels of a look, in the types of exported files: a number of the channel's kind each.
+class ChannelFields {
+ public:
+  /// Refers to `look`.
+  explicit ChannelFields(const LookReader& look) : look_(look) {
+    for (const ChannelView& channel : look.channels()) bytes_ += size_of(channel.kind);
+  }
+
+  bool is_empty() const { return look_.channels().empty(); }
+  std::size_t count() const { return look_.channels().size(); }
+  /// Returns the bytes of all fields of a row.
+  std::size_t bytes() const { return bytes_; }
+  ChannelKind kind(std::size_t i) const { return look_.channels()[i].kind; }
+  static std::size_t size_of(ChannelKind kind) {
+    constexpr std::size_t kSizes[] = {1, 2, 2, 4, 4};
+    return kSizes[static_cast<std::size_t>(kind)];
+  }
+  /// Returns the name of the field: that of the channel, after "channel_" if it is one of `taken`.
+  std::string name(std::size_t i, std::span<const char* const> taken) const {
+    const std::string name(look_.channels()[i].name());
+    const bool is_taken = std::find(taken.begin(), taken.end(), name) != taken.end();
+    return is_taken ? "channel_" + name : name;
+  }
+  /// Returns the bytes of the fields of a voxel, valid until the next call.
+  std::span<const std::byte> row(Vec3i voxel, int level) {
+    std::array<double, kMaxChannels> values;
+    look_.read_channels(voxel, level, values);
+    row_.clear();
+    for (std::size_t i = 0; i < count(); ++i) {
+      const auto append = [&](auto value) {
+        const auto bytes = std::as_bytes(std::span(&value, 1));
+        row_.insert(row_.end(), bytes.begin(), bytes.end());
+      };
+      switch (kind(i)) {
+        case ChannelKind::kU8:
+          append(static_cast<std::uint8_t>(values[i]));
+          break;
+        case ChannelKind::kU16:
+          append(static_cast<std::uint16_t>(values[i]));
+          break;
+        case ChannelKind::kI16:
+          append(static_cast<std::int16_t>(values[i]));
+          break;
+        case ChannelKind::kI32:
+          append(static_cast<std::int32_t>(values[i]));
+          break;
+        case ChannelKind::kF32:
+          append(static_cast<float>(values[i]));
+          break;
+      }
+    }
+    return row_;
+  }
+
+ private:
+  const LookReader& look_;
+  std::size_t bytes_ = 0;
+  std::vector<std::byte> row_;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,48 @@
+#include "voxdag/stored/attributes/channel_colors.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/stored/attributes/dag_attributes.hpp"
+
+namespace voxdag {
+
+std::span<const Value8> color_map() {
+  static constexpr Value8 kColors[] = {{68, 1, 84},    {71, 45, 123},  {59, 82, 139},
+                                       {44, 114, 142}, {33, 145, 140}, {40, 174, 128},
+                                       {94, 201, 98},  {173, 220, 48}, {253, 231, 37}};
+  return kColors;
+}
+
+Value8 mapped_color(double place) {
+  const std::span<const Value8> colors = color_map();
+  const double at = place > 0 ? std::min(place, 1.0) * static_cast<double>(colors.size() - 1) : 0;
+  const auto first = std::min(static_cast<std::size_t>(at), colors.size() - 2);
+  const double part = at - static_cast<double>(first);
+  Value8 color{};
+  for (int c = 0; c < 3; ++c)
+    color[c] = static_cast<std::uint8_t>(
+        std::lround(colors[first][c] + part * (colors[first + 1][c] - colors[first][c])));
+  return color;
+}
+
+ValuePages channel_colors(const ChannelView& channel, const ChannelRange& range, Work work) {
+  ValueEncoder encoder(channel.values, make_value_metric(kColorWeights, 0), nullptr);
+  static_assert(kPageValues == kChannelBlockValues);
+  const double size = range.most - range.least;
+  polled_for(channel.block_count(), 256, work, "channel", [&](std::size_t i) {
+    const std::uint64_t first = i * kChannelBlockValues;
+    const auto count = static_cast<std::size_t>(
+        std::min<std::uint64_t>(kChannelBlockValues, channel.values - first));
+    const ChannelBlock block = channel.block(i);
+    std::array<Value8, kPageValues> colors;
+    for (std::size_t k = 0; k < count; ++k)
+      colors[k] = mapped_color(size > 0 ? (channel.read(block, k) - range.least) / size : 0);
+    encoder.add(first, std::span(colors).first(count));
+  });
+  return encoder.finish();
+}
+
+}  // namespace voxdag

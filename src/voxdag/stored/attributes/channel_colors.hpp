@@ -1,0 +1,23 @@
+#pragma once
+/// Shows channels as colours.
+#include <span>
+
+#include "voxdag/core/parallel/work.hpp"
+#include "voxdag/stored/attributes/encode_channels.hpp"
+#include "voxdag/stored/attributes/value_pages.hpp"
+
+namespace voxdag {
+
+/// The colours of the map, sRGB encoded, from the least value to the greatest at equal distances:
+/// those of viridis (Smith, van der Walt, Firing, matplotlib 2015; CC0).
+std::span<const Value8> color_map();
+
+/// Returns the colour of a place in the map, 0 to 1: colours between those of color_map() are
+/// mixed. Clamps other places.
+Value8 mapped_color(double place);
+
+/// Returns the colours of all cells: range.least has the first colour, range.most the last one.
+/// Runs on the current TBB arena. Throws Cancelled.
+ValuePages channel_colors(const ChannelView& channel, const ChannelRange& range, Work work = {});
+
+}  // namespace voxdag

@@ -1,0 +1,116 @@
+// Channels from `voxdag import`, in reports, edits, pictures and exports.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "process.hpp"
+#include "support/temp_dir.hpp"
+
+namespace voxdag::cli {
+namespace {
+
+class Channels : public testing::Test {
+ protected:
+  Channels() {
+    // Two points in the first voxel.
+    write_text(dir_ / "p.ply",
+               "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+               "property float z\nproperty uchar intensity\nproperty float scalar_T\nend_header\n"
+               "0 0 0 10 1.5\n0.2 0 0 13 2.5\n1 0 0 200 -4\n3 3 3 7 0.3\n");
+  }
+  std::string path(const std::string& name) const { return dir_ / name; }
+  ProcessResult import(std::vector<std::string> more) const {
+    std::vector<std::string> words{"import", path("p.ply"), "--voxel-size",
+                                   "1",      "-o",          path("p.vdag")};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_voxdag(words);
+  }
+  nlohmann::json channels(const std::string& name) const {
+    const ProcessResult result = run_voxdag({"info", path(name), "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out).at("attributes").at("channels");
+  }
+
+  TempDir dir_;
+};
+
+TEST_F(Channels, ImportKeepsFieldsAndInfoListsThem) {
+  const ProcessResult result =
+      import({"--channel", "intensity", "--channel", "scalar_T:as heat,bound=0.125"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("channels      intensity (u8), heat (f32)"), std::string::npos)
+      << result.out;
+  const nlohmann::json list = channels("p.vdag");
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0].at("name"), "intensity");
+  EXPECT_EQ(list[0].at("kind"), "u8");
+  EXPECT_EQ(list[0].at("least"), 7);
+  EXPECT_EQ(list[0].at("greatest"), 200);
+  EXPECT_EQ(list[1].at("name"), "heat");
+  EXPECT_EQ(list[1].at("bound"), 0.125);
+  EXPECT_EQ(list[1].at("least"), -4);
+  EXPECT_EQ(list[1].at("greatest"), 2);
+  EXPECT_EQ(run_voxdag({"verify", path("p.vdag")}).status, 0);
+  EXPECT_NE(run_voxdag({"info", path("p.vdag")}).out.find("u8, 7 to 200"), std::string::npos);
+}
+
+TEST_F(Channels, EditsAndTheCompactFormKeepThem) {
+  ASSERT_EQ(import({"--channel", "intensity"}).status, 0);
+  EXPECT_EQ(
+      run_voxdag({"crop", path("p.vdag"), "--window", "1,0,0,4,4,4", "-o", path("c.vdag")}).status,
+      0);
+  EXPECT_EQ(channels("c.vdag")[0].at("least"), 7);
+  EXPECT_EQ(run_voxdag({"convert", path("p.vdag"), "--compact", "-o", path("k.vdag")}).status, 0);
+  EXPECT_EQ(channels("k.vdag"), channels("p.vdag"));
+  const ProcessResult edited =
+      run_voxdag({"edit", path("p.vdag"), "--do", "add,ball,1,1,1,1.5", "-o", path("e.vdag")});
+  EXPECT_EQ(edited.status, 0) << edited.err;
+  EXPECT_EQ(channels("e.vdag")[0].at("greatest"), 200);
+  EXPECT_EQ(run_voxdag({"verify", path("e.vdag")}).status, 0);
+}
+
+TEST_F(Channels, ExportsComeBackAndOtherFormatsSayThatTheyDropThem) {
+  ASSERT_EQ(import({"--channel", "intensity", "--channel", "scalar_T"}).status, 0);
+  for (const char* const name : {"out.ply", "out.npy"}) {
+    EXPECT_EQ(run_voxdag({"export", path("p.vdag"), "-o", path(name)}).status, 0);
+    EXPECT_EQ(run_voxdag({"import", path(name), "--channel", "intensity", "--channel", "scalar_T",
+                          "-o", path("again.vdag")})
+                  .status,
+              0);
+    EXPECT_EQ(channels("again.vdag"), channels("p.vdag")) << name;
+  }
+  const ProcessResult dropped = run_voxdag({"export", path("p.vdag"), "-o", path("out.obj")});
+  EXPECT_EQ(dropped.status, 0);
+  EXPECT_NE(dropped.err.find("the channels are left out"), std::string::npos) << dropped.err;
+}
+
+TEST_F(Channels, PicturesShowThemAsColours) {
+  ASSERT_EQ(import({"--channel", "intensity"}).status, 0);
+  const std::vector<std::string> render{
+      "render", path("p.vdag"), "--size", "32x32",
+      "-o",     path("o.png"),  "--pass", "albedo=" + path("a.png")};
+  std::vector<std::string> words = render;
+  words.insert(words.end(), {"--color-by", "intensity"});
+  const ProcessResult result = run_voxdag(words);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("intensity: 7 (violet) to 200 (yellow)"), std::string::npos)
+      << result.err;
+  words = render;
+  words.insert(words.end(), {"--color-by", "heat"});
+  expect_failure(run_voxdag(words), 1, "has no channel 'heat': its channels are intensity");
+}
+
+TEST_F(Channels, WhatIsWrongIsSaid) {
+  expect_failure(import({"--channel", "heat"}), 1, "has no field 'heat'");
+  expect_failure(import({"--channel", "intensity,bound=-1"}), 2, "--channel");
+  expect_failure(import({"--channel", "intensity:as a b"}), 2, "--channel");
+  expect_failure(import({"--channel", "scalar_T,kind=u8"}), 1,
+                 "channel 'scalar_T': has the value -4, and the kind u8");
+  write_text(dir_ / "p.csv", "0,0,0,1\n1,0,0,2\n");
+  expect_failure(run_voxdag({"import", path("p.csv"), "--voxel-size", "1", "--channel", "a", "-o",
+                             path("n.vdag")}),
+                 1, "has a format of which no channels are read");
+}
+
+}  // namespace
+}  // namespace voxdag::cli
