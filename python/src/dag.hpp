@@ -103,6 +103,7 @@ void add_contacts(SnapshotClass& snapshot);
 void add_queries(DagClass& dag);
 void add_edits(DagClass& dag);
 void add_materials(DagClass& dag);
+void add_channels(DagClass& dag);
 void add_exports(DagClass& dag);
 void add_pictures(DagClass& dag);
 void add_pictures(SnapshotClass& snapshot);

@@ -43,8 +43,8 @@ DagPointer run_edit(const Make& make) {
   const Edited edited = run_work(make);
   if (edited.drops)
     warn(edited.dag->look().has_colors()
-             ? "the result has no normals and materials of its source"
-             : "the result has no colours, normals and materials of its source");
+             ? "the result has no normals, materials and channels of its source"
+             : "the result has no colours, normals, materials and channels of its source");
   return edited.dag;
 }
 
@@ -204,7 +204,8 @@ DagPointer coarser(const Dag& dag, std::int64_t resolution) {
         add({v.x >> cut, v.y >> cut, v.z >> cut}, reader.read(v, fine).color);
       });
     });
-    return {colored, look.has_normals() || look.has_materials()};
+    return {colored,
+            look.has_normals() || look.has_materials() || dag.model().attributes().has_channels()};
   });
 }
 

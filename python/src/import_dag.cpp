@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "arrays.hpp"
+#include "channels.hpp"
 #include "dag.hpp"
 #include "grid_arguments.hpp"
 #include "run_work.hpp"
@@ -25,15 +26,17 @@ class ArraySource : public VoxelSource {
  public:
   /// `colors` and `labels` have a value for each place, or none.
   ArraySource(std::vector<Vec3d> places, std::vector<Rgb8> colors, std::vector<Label> labels,
-              bool has_points)
+              ChannelRows channels, bool has_points)
       : places_(std::move(places)),
         colors_(std::move(colors)),
         labels_(std::move(labels)),
+        channels_(std::move(channels)),
         has_points_(has_points) {}
 
   bool has_points() const override { return has_points_; }
   bool has_colors() const override { return !colors_.empty(); }
   bool has_labels() const override { return !labels_.empty(); }
+  std::vector<ChannelSpec> channels() const override { return channels_.specs; }
   void visit_all(const VisitBatch& visit) const override {
     constexpr std::size_t kBatch = 65536;
     for (std::size_t i = 0; i < places_.size(); i += kBatch) {
@@ -41,7 +44,12 @@ class ArraySource : public VoxelSource {
       const auto part = [&]<class T>(const std::vector<T>& of) {
         return of.empty() ? std::span<const T>() : std::span(of).subspan(i, count);
       };
-      visit({part(places_), part(colors_), {}, part(labels_)});
+      const std::size_t each = channels_.specs.size();
+      visit({part(places_),
+             part(colors_),
+             {},
+             part(labels_),
+             std::span(channels_.values).subspan(i * each, count * each)});
     }
   }
 
@@ -49,6 +57,7 @@ class ArraySource : public VoxelSource {
   std::vector<Vec3d> places_;
   std::vector<Rgb8> colors_;
   std::vector<Label> labels_;
+  ChannelRows channels_;
   bool has_points_;
 };
 
@@ -120,32 +129,34 @@ ImportOptions options_of_voxels(const std::optional<std::int64_t>& resolution,
   return options;
 }
 
-/// Imports places with the colours and labels of their rows.
+/// Imports places with the colours, labels and channels of their rows.
 DagPointer import_rows(std::vector<Vec3d> places, const std::optional<ArrayLike>& colors,
-                       const std::optional<ArrayLike>& labels, bool has_points,
-                       const ImportOptions& options, const std::string& name) {
+                       const std::optional<ArrayLike>& labels, const ChannelsArgument& channels,
+                       bool has_points, const ImportOptions& options, const std::string& name) {
   std::vector<Rgb8> values = colors_of_rows(colors, places.size());
   std::vector<Label> numbers = labels_of_rows(labels, places.size());
-  const ArraySource source(std::move(places), std::move(values), std::move(numbers), has_points);
+  ChannelRows rows = channel_rows(channels, {static_cast<py::ssize_t>(places.size())});
+  const ArraySource source(std::move(places), std::move(values), std::move(numbers),
+                           std::move(rows), has_points);
   return import_arrays(source, options, name);
 }
 
 DagPointer from_points(const ArrayLike& points, std::optional<std::int64_t> resolution,
                        std::optional<double> pitch, std::optional<Bounds> bounds,
                        const std::optional<ArrayLike>& colors,
-                       const std::optional<ArrayLike>& labels) {
-  return import_rows(rows_of<double>(points, "points"), colors, labels, true,
+                       const std::optional<ArrayLike>& labels, const ChannelsArgument& channels) {
+  return import_rows(rows_of<double>(points, "points"), colors, labels, channels, true,
                      import_options(grid_request(resolution, pitch, bounds)), "points");
 }
 
 DagPointer from_coords(const ArrayLike& coords, std::optional<std::int64_t> resolution,
                        const std::optional<double>& pitch, const std::optional<Point>& origin,
                        const std::optional<ArrayLike>& colors,
-                       const std::optional<ArrayLike>& labels) {
+                       const std::optional<ArrayLike>& labels, const ChannelsArgument& channels) {
   const ImportOptions options = options_of_voxels(resolution, pitch, origin);
   std::vector<Vec3d> places;
   for (const Vec3i v : voxels_of(coords, "coords")) places.push_back(Vec3d(v));
-  return import_rows(std::move(places), colors, labels, false, options, "coords");
+  return import_rows(std::move(places), colors, labels, channels, false, options, "coords");
 }
 
 /// Calls add(place, value) for the values of a dense array that are not 0.
@@ -162,12 +173,13 @@ void visit_dense(const Array<T>& dense, const Add& add) {
 
 DagPointer from_dense(const ArrayLike& given, std::optional<std::int64_t> resolution,
                       const std::optional<double>& pitch, const std::optional<Point>& origin,
-                      bool labels) {
+                      bool labels, const ChannelsArgument& channels) {
   if (given.ndim() != 3) throw py::value_error("dense must have three dimensions: x, y, z");
   const char kind =
       kind_of(given, "dense", "biu", "bool or whole numbers: compare real ones, dense > 0.5");
   std::vector<Vec3d> places;
   std::vector<Label> values;
+  std::vector<std::size_t> picks;  // the places in the array, in C order
   const auto add_label = [&](Vec3d place, auto value) {
     places.push_back(place);
     values.push_back(label_of(value));
@@ -178,11 +190,19 @@ DagPointer from_dense(const ArrayLike& given, std::optional<std::int64_t> resolu
     visit_dense(Array<std::uint64_t>(given), add_label);
   else
     visit_dense(Array<std::int64_t>(given), add_label);
+  for (const Vec3d place : places) {
+    const Vec3<std::size_t> at(place);
+    picks.push_back((at.x * static_cast<std::size_t>(given.shape(1)) + at.y) *
+                        static_cast<std::size_t>(given.shape(2)) +
+                    at.z);
+  }
+  ChannelRows rows =
+      channel_rows(channels, {given.shape(0), given.shape(1), given.shape(2)}, &picks);
   std::int64_t side = 1 << kMinLevels;
   for (int axis = 0; axis < 3; ++axis) side = std::max<std::int64_t>(side, given.shape(axis));
   const auto least = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(side)));
   const ImportOptions options = options_of_voxels(resolution.value_or(least), pitch, origin);
-  const ArraySource source(std::move(places), {}, std::move(values), false);
+  const ArraySource source(std::move(places), {}, std::move(values), std::move(rows), false);
   return import_arrays(source, options, "dense");
 }
 
@@ -210,7 +230,7 @@ DagPointer import_file(const std::filesystem::path& path, std::optional<std::int
                        const std::optional<double>& min_scale,
                        const std::optional<double>& max_scale, bool points,
                        const py::object& labels, const std::optional<py::list>& keep,
-                       const std::optional<py::list>& drop) {
+                       const std::optional<py::list>& drop, const py::object& channels) {
   if (opacity && !(*opacity > 0 && *opacity < 1))
     throw py::value_error("opacity must be above 0 and below 1");
   for (const auto& [scale, name] : {std::pair(min_scale, "min_scale"), {max_scale, "max_scale"}})
@@ -229,6 +249,7 @@ DagPointer import_file(const std::filesystem::path& path, std::optional<std::int
   options.drops_labels = drop.has_value();
   LabelRequest request = label_request(labels);
   if ((keep || drop) && !request) request = "";
+  const std::vector<ChannelRequest> wanted = channel_requests(channels);
   std::vector<std::string> warnings;
   DagPointer dag = run_work([&](Work work) {
     return with_file_name(path.string(), [&] {
@@ -238,6 +259,7 @@ DagPointer import_file(const std::filesystem::path& path, std::optional<std::int
                                    .grid = grid,
                                    .splats_are_points = points,
                                    .labels = request,
+                                   .channels = wanted,
                                    .work = work});
       warnings = source->warnings();
       check_grid_options(*source, options);
@@ -286,10 +308,10 @@ void add_importers(py::module_& module) {
   const auto none = py::none();
   module.def("from_points", &from_points, py::arg("points"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
-             py::arg("colors") = none, py::arg("labels") = none);
+             py::arg("colors") = none, py::arg("labels") = none, py::arg("channels") = none);
   module.def("from_coords", &from_coords, py::arg("coords"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("origin") = none,
-             py::arg("colors") = none, py::arg("labels") = none,
+             py::arg("colors") = none, py::arg("labels") = none, py::arg("channels") = none,
              R"(Builds the DAG of voxels.
 
 coords: (N, 3) whole numbers.
@@ -297,15 +319,18 @@ resolution: voxels along the longest side, 1 to 2^20; default: a grid that holds
 pitch: side of a voxel, in world units; default: 1.
 origin: (x, y, z), lower corner of voxel (0, 0, 0), in world units.
 colors: (N, 3), sRGB: uint8, uint16, or real numbers from 0 to 1.
-labels: (N,) whole numbers, which become materials.)");
+labels: (N,) whole numbers, which become materials.
+channels: a dict from names to (N,) numbers, or to pairs of such an array and a bound, the largest
+error of a value; without a bound, values are exact. A voxel has the mean of its rows.)");
   module.def("from_dense", &from_dense, py::arg("dense"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("origin") = none,
-             py::arg("labels") = false,
+             py::arg("labels") = false, py::arg("channels") = none,
              R"(Builds the DAG of the voxels of a dense array.
 
 dense: [x, y, z]; those that are True, or not 0 in whole numbers, are voxels.
 resolution, pitch, origin: as for from_coords().
-labels: keep the values as labels, which become materials.)");
+labels: keep the values as labels, which become materials.
+channels: as for from_coords(), with arrays of the shape of dense.)");
   module.def(
       "carve_rays", &carve_rays, py::arg("origins"), py::arg("ends"), py::kw_only(),
       py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
@@ -322,7 +347,7 @@ hits: (N,) bool: False for rays that met nothing, whose last voxel is free, too.
              py::arg("bounds") = none, py::arg("threshold") = none, py::arg("grid") = "",
              py::arg("colors") = true, py::arg("opacity") = none, py::arg("min_scale") = none,
              py::arg("max_scale") = none, py::arg("points") = false, py::arg("labels") = false,
-             py::arg("keep") = none, py::arg("drop") = none,
+             py::arg("keep") = none, py::arg("drop") = none, py::arg("channels") = none,
              R"(Reads a file of points, voxels or a volume, as `voxdag import` does.
 
 path: .vox, .las, .ply, .nrrd, .npy and others (docs/import.md).
@@ -336,6 +361,8 @@ opacity, min_scale, max_scale: how Gaussian splats set voxels (docs/splats.md).
 points: read the centres of splats as points.
 labels: keep labels as materials: True, or the name of a field of points (docs/import.md#labels).
 keep, drop: import only these labels, or all others: a list of numbers and names.
+channels: fields to keep as channels (docs/import.md#channels): a list of names, or a dict from names
+of channels to names of fields, or to pairs of a field and a bound. The field of a volume is "value".
 Raises OSError if the file cannot be read; what the file holds and is left out becomes a warning.)");
 }
 

@@ -111,6 +111,7 @@ formats, and pages.)")
   add_queries(dag);
   add_edits(dag);
   add_materials(dag);
+  add_channels(dag);
   add_exports(dag);
   add_pictures(dag);
   add_live_edits(module);

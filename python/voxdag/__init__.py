@@ -108,7 +108,8 @@ def build(vertices, faces=None, *, resolution=None, pitch=None, bounds=None, sol
                          solid=solid, colors=colors)
 
 
-def from_points(points, *, resolution=None, pitch=None, bounds=None, colors=None, labels=None):
+def from_points(points, *, resolution=None, pitch=None, bounds=None, colors=None, labels=None,
+                channels=None):
     """Builds the DAG of the voxels that hold points.
 
     points: (N, 3) real numbers in world units, or a point cloud of Open3D.
@@ -117,13 +118,15 @@ def from_points(points, *, resolution=None, pitch=None, bounds=None, colors=None
     points, in linear light.
     labels: (N,) whole numbers, which become materials; a voxel has the one that is most frequent in
     it, the smallest of equally frequent ones.
+    channels: a dict from names to (N,) numbers, or to pairs of such an array and a bound, the largest
+    error of a value; without a bound, values are exact. A voxel has the mean of its points.
     """
     if hasattr(points, "points"):
         cloud, points = points, _numpy.asarray(points.points)
         if colors is None and cloud.has_colors():
             colors = _numpy.asarray(cloud.colors)
     return _voxdag.from_points(points, resolution=resolution, pitch=pitch, bounds=bounds,
-                               colors=colors, labels=labels)
+                               colors=colors, labels=labels, channels=channels)
 
 
 _io_open = _builtins.open
@@ -148,7 +151,7 @@ def _from_bytes(file_bytes):
 
 
 def _reduce(dag):
-    """Pickles a Dag as its .vdag file, with colours, normals and materials."""
+    """Pickles a Dag as its .vdag file, with colours, normals, materials and channels."""
     return _from_bytes, (_file_bytes(dag.save, "dag.vdag"),)
 
 
