@@ -15,7 +15,6 @@ voxdag_packages=(
 voxdag_test_packages=(
   libgtest-dev zstd python3-matplotlib
   pybind11-dev python3-dev python3-numpy python3-pytest  # the Python module
-  libtiff-dev libgdcm-dev  # stacks of TIFF, and DICOM
   libopenmpi-dev openmpi-bin  # several processes under mpirun
   doxygen  # the reference of the public headers
   clang-format
@@ -27,6 +26,7 @@ command -v node >/dev/null || voxdag_test_packages+=(nodejs)
 # What `scripts/test.sh --extended` and `--tidy` need beside.
 voxdag_extended_packages=(
   libopenvdb-dev libnanovdb-dev libboost-dev  # .vdb and .nvdb volumes
+  libtiff-dev libgdcm-dev  # stacks of TIFF, and DICOM
   clang clang-tidy libclang-rt-14-dev
   glslang-tools spirv-tools libvulkan-dev mesa-vulkan-drivers libglfw3-dev libopengl-dev libgl1-mesa-dri xvfb xauth  # shaders and their examples
 )
