@@ -91,10 +91,14 @@ void check_channel(const ChannelSpec& spec) {
     throw Error("", "",
                 "a channel cannot have the name " + in_quotes(spec.name) +
                     ": names are 1 to 63 letters, digits, '_', '-' and '.'");
-  if (!(spec.bound >= 0 && spec.bound <= range_of(ChannelKind::kF32).most))
+  // Threads whose subnormal numbers are 0 must store the same values.
+  constexpr double kLeast = static_cast<double>(std::numeric_limits<float>::min());
+  const bool is_zero = std::bit_cast<std::uint64_t>(spec.bound) == 0;
+  if (!is_zero && !(spec.bound >= kLeast && spec.bound <= range_of(ChannelKind::kF32).most))
     throw Error("", "",
                 "the channel " + in_quotes(spec.name) + " has the bound " +
-                    number_text(spec.bound) + ", and bounds are finite and not negative");
+                    number_text(spec.bound) + ", and bounds are 0, or finite and at least " +
+                    number_text(kLeast));
   if (spec.bound > 0 && spec.kind != ChannelKind::kF32)
     throw Error("", "",
                 "the channel " + in_quotes(spec.name) + " has whole numbers (" +

@@ -82,7 +82,6 @@ void check_entry(const ChannelsView& channels, std::size_t i) {
   if (entry.kind >= kChannelKinds)
     fail_at("", "has the unknown kind " + std::to_string(entry.kind) + ": 0 to 4 are allowed");
   check_channel({{begin, name_end}, static_cast<ChannelKind>(entry.kind), entry.bound});
-  if (std::signbit(entry.bound)) fail_at("", "has the bound -0");
   if (channels.find(entry.name) != i) fail_at("", "has the name of another channel");
   if (entry.reserved != 0 || std::any_of(std::begin(entry.padding), std::end(entry.padding),
                                          [](std::uint64_t word) { return word != 0; }))

@@ -102,13 +102,13 @@ class DenseSource : public VoxelSource {
                   "truncated: the data begin at byte " + std::to_string(file_.begin));
     if (is_raw()) check_length();
     file_.volume.has_values = !file_.channels.empty();
+    const std::string wanted = file_.volume.has_labels ? "labels" : "channels";
     if ((file_.volume.has_labels || file_.volume.has_values) &&
         (file_.volume.channels > 1 || file_.volume.repeats > 1))
       throw Error(file_.path.string(), "header",
                   file_.volume.has_colors()
-                      ? "holds colours, not labels or values"
-                      : "holds several layers, and labels and channels need one value for each "
-                        "voxel");
+                      ? "holds colours, not " + wanted
+                      : "holds several layers, and " + wanted + " need one value for each voxel");
     check_value_channel();
     if (file_.volume.channels == 4 && file_.volume.has_colors())
       with_bytes([&](const FillBytes& fill) {
