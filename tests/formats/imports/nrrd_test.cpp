@@ -248,7 +248,7 @@ TEST_F(Nrrd, LabelsHaveTheNamesOfSegments) {
         "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 2 1\nkinds: list domain domain "
         "domain\nencoding: raw\n\n12345678");
   EXPECT_TRUE(has(error_of([&] { open_voxel_source(path("l.nrrd"), {.labels = ""}); }),
-                  "labels and channels need one value"));
+                  "labels need one value"));
 }
 
 TEST_F(Nrrd, EveryTruncatedOrDamagedFileIsRefusedOrSafe) {
