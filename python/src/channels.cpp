@@ -71,22 +71,9 @@ py::object channel(const Dag& dag, const std::string& name, const std::optional<
       });
       return 0;
     });
-  const auto array_as = [&]<class T>(T) {
+  return with_kind(view.kind, [&]<class T>(T) -> py::array {
     return array_of(std::vector<T>(values.begin(), values.end()));
-  };
-  switch (view.kind) {
-    case ChannelKind::kU8:
-      return array_as(std::uint8_t{});
-    case ChannelKind::kU16:
-      return array_as(std::uint16_t{});
-    case ChannelKind::kI16:
-      return array_as(std::int16_t{});
-    case ChannelKind::kI32:
-      return array_as(std::int32_t{});
-    case ChannelKind::kF32:
-      break;
-  }
-  return array_as(float{});
+  });
 }
 
 py::list channel_list(const Dag& dag) {

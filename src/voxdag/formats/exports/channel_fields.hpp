@@ -25,8 +25,7 @@ class ChannelFields {
   std::size_t bytes() const { return bytes_; }
   ChannelKind kind(std::size_t i) const { return look_.channels()[i].kind; }
   static std::size_t size_of(ChannelKind kind) {
-    constexpr std::size_t kSizes[] = {1, 2, 2, 4, 4};
-    return kSizes[static_cast<std::size_t>(kind)];
+    return with_kind(kind, [](auto zero) { return sizeof zero; });
   }
   /// Returns the name of the field: that of the channel, after "channel_" if it is one of `taken`.
   std::string name(std::size_t i, std::span<const char* const> taken) const {
@@ -40,27 +39,11 @@ class ChannelFields {
     look_.read_channels(voxel, level, values);
     row_.clear();
     for (std::size_t i = 0; i < count(); ++i) {
-      const auto append = [&](auto value) {
+      with_kind(kind(i), [&]<class T>(T) {
+        const T value = static_cast<T>(values[i]);
         const auto bytes = std::as_bytes(std::span(&value, 1));
         row_.insert(row_.end(), bytes.begin(), bytes.end());
-      };
-      switch (kind(i)) {
-        case ChannelKind::kU8:
-          append(static_cast<std::uint8_t>(values[i]));
-          break;
-        case ChannelKind::kU16:
-          append(static_cast<std::uint16_t>(values[i]));
-          break;
-        case ChannelKind::kI16:
-          append(static_cast<std::int16_t>(values[i]));
-          break;
-        case ChannelKind::kI32:
-          append(static_cast<std::int32_t>(values[i]));
-          break;
-        case ChannelKind::kF32:
-          append(static_cast<float>(values[i]));
-          break;
-      }
+      });
     }
     return row_;
   }

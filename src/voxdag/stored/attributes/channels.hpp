@@ -32,6 +32,24 @@ inline constexpr std::uint64_t kChannelBlockValues = 256;
 enum class ChannelKind : std::uint32_t { kU8, kU16, kI16, kI32, kF32 };
 inline constexpr std::uint32_t kChannelKinds = 5;
 
+/// Returns what `use` returns for a zero of the kind's type.
+template <class Use>
+decltype(auto) with_kind(ChannelKind kind, const Use& use) {
+  switch (kind) {
+    case ChannelKind::kU8:
+      return use(std::uint8_t{});
+    case ChannelKind::kU16:
+      return use(std::uint16_t{});
+    case ChannelKind::kI16:
+      return use(std::int16_t{});
+    case ChannelKind::kI32:
+      return use(std::int32_t{});
+    case ChannelKind::kF32:
+      break;
+  }
+  return use(float{});
+}
+
 struct ChannelsHeader {
   std::uint32_t channels;    ///< 1 to kMaxChannels.
   std::uint32_t reserved;    ///< Zero.
