@@ -1,7 +1,5 @@
 #include "voxdag/formats/imports/channels/channel_collector.hpp"
 
-#include "voxdag/algebra/voxels/morton_builder.hpp"
-#include "voxdag/algebra/voxels/voxel_builder.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/printable.hpp"
 
@@ -13,13 +11,7 @@ void ChannelCollector::add(Vec3i voxel, double value) {
   } catch (const Error& error) {
     throw Error("", "channel " + in_quotes(spec_.name), error.reason());
   }
-  records_.add({code_in_grid(voxel, levels_), value});
-}
-
-Svdag ChannelCollector::make_dag() {
-  MortonBuilder builder(levels_, work_.memory);
-  records_.visit_all([&](const ValuedCode& record) { builder.add(record.code); });
-  return builder.finish();
+  records_.add(voxel, value);
 }
 
 EncodedChannel ChannelCollector::encode(const SvdagView& dag, const CellIndexView& index) {
@@ -31,7 +23,7 @@ EncodedChannel ChannelCollector::encode(const SvdagView& dag, const CellIndexVie
     count = 0;
     sum = 0;
   };
-  records_.visit_all([&](const ValuedCode& record) {
+  records_.visit_all([&](const VoxelRecord<double>& record) {
     if (record.code != code) finish_voxel();
     code = record.code;
     sum += record.value;

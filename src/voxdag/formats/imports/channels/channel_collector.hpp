@@ -1,22 +1,11 @@
 #pragma once
 /// Collects the values of a channel of voxels.
 #include <filesystem>
-#include <optional>
 
 #include "voxdag/algebra/attributes/channel_of_voxels.hpp"
-#include "voxdag/algebra/voxels/sorted_records.hpp"
-#include "voxdag/core/parallel/work.hpp"
-#include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/formats/imports/voxel_records.hpp"
 
 namespace voxdag {
-
-/// A voxel and one of its values.
-struct ValuedCode {
-  std::uint64_t code = 0;
-  double value = 0;
-
-  friend auto operator<=>(const ValuedCode&, const ValuedCode&) = default;
-};
 
 /// Collects values of voxels, in any order; a voxel may have many. It gets their mean, summed in
 /// ascending order in double and rounded by channel_code(). Memory is bounded, but for 4 bytes for
@@ -27,22 +16,21 @@ class ChannelCollector {
   /// lie in `folder`. Throws OverMemory.
   ChannelCollector(int levels, ChannelSpec spec, std::size_t most_values,
                    const std::filesystem::path& folder, Work work)
-      : levels_(levels), spec_(std::move(spec)), work_(work), records_(most_values, folder, work) {}
+      : spec_(std::move(spec)), work_(work), records_(levels, most_values, folder, work) {}
 
   /// Adds a value of a voxel. Throws Error if the voxel lies outside of the grid, for values that
   /// the channel's kind does not have, or if a file cannot be written; OverMemory and Cancelled.
   void add(Vec3i voxel, double value);
-  /// Returns the DAG of all voxels. Throws as ColoredVoxelBuilder::finish().
-  Svdag make_dag();
+  /// Returns the DAG of all voxels. Throws as VoxelRecords::make_dag().
+  Svdag make_dag() { return records_.make_dag(); }
   /// Returns the channel of all cells of that DAG, which `index` numbers. Throws Error if a file
   /// cannot be read; OverMemory and Cancelled.
   EncodedChannel encode(const SvdagView& dag, const CellIndexView& index);
 
  private:
-  int levels_;
   ChannelSpec spec_;
   Work work_;
-  SortedRecords<ValuedCode, Repeats::kKept> records_;
+  VoxelRecords<double> records_;
 };
 
 }  // namespace voxdag

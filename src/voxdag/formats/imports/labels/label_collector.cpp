@@ -4,8 +4,6 @@
 #include <bit>
 #include <string>
 
-#include "voxdag/algebra/voxels/morton_builder.hpp"
-#include "voxdag/algebra/voxels/voxel_builder.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/stored/attributes/encode_material_ids.hpp"
 
@@ -116,44 +114,43 @@ class CellMaterials {
 
 LabelCollector::LabelCollector(int levels, std::size_t most_labels,
                                const std::filesystem::path& folder, Work work, ColorRule rule)
-    : levels_(levels), work_(work), rule_(rule), records_(most_labels, folder, work) {}
+    : work_(work), rule_(rule), records_(levels, most_labels, folder, work) {}
 
 void LabelCollector::add(Vec3i voxel, Label label) {
   if (label != newest_ && labels_.insert(label).second && labels_.size() > kMaxMaterials)
     throw Error("", "", "has more than " + std::to_string(kMaxMaterials) + " labels");
   newest_ = label;
-  const std::uint64_t code = code_in_grid(voxel, levels_);
   if (rule_ == ColorRule::kLast && label >> kLastBits != 0)
     throw Error("", "",
                 "has the label " + std::to_string(label) +
                     ", and labels of a palette are from 0 to 2097151");
   if (rule_ == ColorRule::kLast)
-    records_.add({code, static_cast<Label>(added_++ << kLastBits) | label});
+    records_.add(voxel, static_cast<Label>(added_++ << kLastBits) | label);
   else
-    records_.add({code, label});
+    records_.add(voxel, label);
 }
 
 /// Calls visit(code, label) for each voxel, in the order of the codes.
 template <class Visit>
 void LabelCollector::visit_voxels(const Visit& visit) {
-  std::optional<LabelledCode> last;  // of the voxel that is being read
+  std::optional<VoxelRecord<Label>> last;  // of the voxel that is being read
   Label best = 0;
   std::uint64_t count = 0, most = 0;
   const auto finish_voxel = [&] {
     if (!last) return;
     if (rule_ == ColorRule::kLast)
-      best = last->label & ((Label{1} << kLastBits) - 1);
+      best = last->value & ((Label{1} << kLastBits) - 1);
     else if (count > most)
-      best = last->label;
+      best = last->value;
     visit(last->code, best);
   };
-  records_.visit_all([&](const LabelledCode& record) {
+  records_.visit_all([&](const VoxelRecord<Label>& record) {
     const bool is_same_voxel = last && last->code == record.code;
     if (!is_same_voxel) {
       finish_voxel();
       count = most = 0;
-    } else if (record.label != last->label) {
-      if (count > most) best = last->label, most = count;
+    } else if (record.value != last->value) {
+      if (count > most) best = last->value, most = count;
       count = 0;
     }
     ++count;
@@ -162,18 +159,13 @@ void LabelCollector::visit_voxels(const Visit& visit) {
   finish_voxel();
 }
 
-Svdag LabelCollector::make_dag() {
-  MortonBuilder builder(levels_, work_.memory);
-  records_.visit_all([&](const LabelledCode& record) { builder.add(record.code); });
-  return builder.finish();
-}
-
 LabelIds LabelCollector::encode() {
   LabelIds result;
   result.labels.assign(labels_.begin(), labels_.end());
   std::sort(result.labels.begin(), result.labels.end());
   if (result.labels.empty()) return result;
-  CellMaterials cells(levels_, static_cast<std::uint32_t>(result.labels.size()), work_.memory);
+  CellMaterials cells(records_.levels(), static_cast<std::uint32_t>(result.labels.size()),
+                      work_.memory);
   visit_voxels([&](std::uint64_t code, Label label) {
     const auto at = std::lower_bound(result.labels.begin(), result.labels.end(), label);
     cells.add(code, static_cast<std::uint16_t>(at - result.labels.begin()));

@@ -5,23 +5,14 @@
 #include <vector>
 
 #include "voxdag/algebra/attributes/cell_mean.hpp"
-#include "voxdag/algebra/voxels/sorted_records.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
+#include "voxdag/formats/imports/voxel_records.hpp"
 #include "voxdag/formats/imports/voxel_source.hpp"
 #include "voxdag/stored/attributes/material_ids.hpp"
-#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
-
-/// A voxel and one of its labels, or for ColorRule::kLast the place in the file and a label.
-struct LabelledCode {
-  std::uint64_t code = 0;
-  Label label = 0;
-
-  friend auto operator<=>(const LabelledCode&, const LabelledCode&) = default;
-};
 
 /// The labels of a DAG's cells.
 struct LabelIds {
@@ -46,8 +37,8 @@ class LabelCollector {
   /// file cannot be written; OverMemory and Cancelled.
   void add(Vec3i voxel, Label label);
 
-  /// Returns the DAG of all voxels. Throws as ColoredVoxelBuilder::finish().
-  Svdag make_dag();
+  /// Returns the DAG of all voxels. Throws as VoxelRecords::make_dag().
+  Svdag make_dag() { return records_.make_dag(); }
   /// Returns the labels of all cells of that DAG. The budget no longer counts the result when the
   /// function returns. Throws Error if a file cannot be read; OverMemory and Cancelled.
   LabelIds encode();
@@ -58,13 +49,12 @@ class LabelCollector {
 
   static constexpr int kLastBits = 21;  ///< Of a label by ColorRule::kLast.
 
-  int levels_;
   Work work_;
   ColorRule rule_;
   std::uint64_t added_ = 0;
   std::unordered_set<Label> labels_;
   std::optional<Label> newest_;
-  SortedRecords<LabelledCode, Repeats::kKept> records_;
+  VoxelRecords<Label> records_;  ///< By ColorRule::kLast: the place in the file, then the label.
 };
 
 }  // namespace voxdag
