@@ -163,14 +163,15 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
   std::optional<LabelCollector> labels;
   std::optional<VoxelBuilder> voxels;
   if (has_colors) colors.emplace(levels, most(sizeof(ColoredCode)), options.folder, work, rule);
-  if (has_labels) labels.emplace(levels, most(sizeof(LabelledCode)), options.folder, work, rule);
+  if (has_labels)
+    labels.emplace(levels, most(sizeof(VoxelRecord<Label>)), options.folder, work, rule);
   std::vector<EncodedChannel> encoded;
   for (const ChannelSpec& spec : specs) encoded.push_back({spec, {}});
   join_channels(1, encoded);  // Refuses wrong lists before the file is read.
   encoded.clear();
   std::deque<ChannelCollector> channels;
   for (const ChannelSpec& spec : specs)
-    channels.emplace_back(levels, spec, most(sizeof(ValuedCode)), options.folder, work);
+    channels.emplace_back(levels, spec, most(sizeof(VoxelRecord<double>)), options.folder, work);
   if (tables == 0) voxels.emplace(levels, most(sizeof(std::uint64_t)), options.folder, work);
   source.visit_all([&](const VoxelBatch& batch) {
     if (voxels) return each_voxel(batch, [&](Vec3i voxel, std::size_t) { voxels->add(voxel); });

@@ -9,7 +9,7 @@
 #include "voxdag/formats/imports/derived_source.hpp"
 #include "voxdag/formats/imports/file_placement.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
-#include "voxdag/formats/imports/volumes/slice_stack.hpp"
+#include "voxdag/formats/imports/volumes/slice_files.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
 #include "voxdag/formats/input_file.hpp"
 
@@ -25,29 +25,31 @@ struct SourceFormat {
   std::unique_ptr<VoxelSource> (*open)(const Path& path, const Options& options);
 };
 
-std::unique_ptr<VoxelSource> open_text(const Path& path, const Options& options) {
-  return open_xyz_points(path, options.labels);
-}
+using Source = std::unique_ptr<VoxelSource>;
 
-std::unique_ptr<VoxelSource> open_blocks(const Path& path, const Options& options) {
-  return open_schematic(path, options.labels);
+template <auto kOpen>
+Source with_labels(const Path& path, const Options& options) {
+  return kOpen(path, options.labels);
 }
-
-std::unique_ptr<VoxelSource> open_map(const Path& path, const Options& options) {
-  return open_octomap(path, options.threshold);
+/// For points, whose labels and channels are fields.
+template <auto kOpen>
+Source with_fields(const Path& path, const Options& options) {
+  return kOpen(path, options.labels, options.channels);
+}
+/// For volumes, whose values can be labels and a channel.
+template <auto kOpen>
+Source with_values(const Path& path, const Options& options) {
+  return kOpen(path, options.threshold, options.labels, options.channels);
 }
 
 constexpr SourceFormat kSourceFormats[] = {
-    {".npy", true,
-     [](const Path& path, const Options& options) {
-       return open_npy(path, options.threshold, options.labels, options.channels);
-     }},
-    {".xyz", false, open_text},
-    {".txt", false, open_text},
-    {".csv", false, open_text},
-    {".asc", false, open_text},
-    {".pts", false, open_text},
-    {".xyzrgb", false, open_text},
+    {".npy", true, with_values<open_npy>},
+    {".xyz", false, with_labels<open_xyz_points>},
+    {".txt", false, with_labels<open_xyz_points>},
+    {".csv", false, with_labels<open_xyz_points>},
+    {".asc", false, with_labels<open_xyz_points>},
+    {".pts", false, with_labels<open_xyz_points>},
+    {".xyzrgb", false, with_labels<open_xyz_points>},
     {".ply", false,
      [](const Path& path, const Options& options) {
        return open_ply_points(path, options.splats_are_points, options.labels, options.channels);
@@ -64,55 +66,33 @@ constexpr SourceFormat kSourceFormats[] = {
      [](const Path& path, const Options& options) {
        return open_sog(path, options.splats_are_points, options.work);
      }},
-    {".las", false,
-     [](const Path& path, const Options& options) {
-       return open_las_points(path, options.labels, options.channels);
-     }},
-    {".pcd", false,
-     [](const Path& path, const Options& options) {
-       return open_pcd_points(path, options.labels);
-     }},
+    {".las", false, with_fields<open_las_points>},
+    {".pcd", false, with_labels<open_pcd_points>},
     {".binvox", false, [](const Path& path, const Options&) { return open_binvox(path); }},
-    {".nrrd", true,
-     [](const Path& path, const Options& options) {
-       return open_nrrd(path, options.threshold, options.labels, options.channels);
-     }},
-    {".nhdr", true,
-     [](const Path& path, const Options& options) {
-       return open_nrrd(path, options.threshold, options.labels, options.channels);
-     }},
-    {".nii", true,
-     [](const Path& path, const Options& options) {
-       return open_nifti(path, options.threshold, options.labels, options.channels);
-     }},
-    {".nii.gz", true,
-     [](const Path& path, const Options& options) {
-       return open_nifti(path, options.threshold, options.labels, options.channels);
-     }},
-    {".tif", true,
-     [](const Path& path, const Options& options) {
-       return open_tiff(path, options.threshold, options.labels);
-     }},
-    {".tiff", true,
-     [](const Path& path, const Options& options) {
-       return open_tiff(path, options.threshold, options.labels);
-     }},
-    {".dcm", true,
-     [](const Path& path, const Options& options) {
-       return open_dicom(path, options.threshold, options.labels);
-     }},
+    {".nrrd", true, with_values<open_nrrd>},
+    {".nhdr", true, with_values<open_nrrd>},
+    {".nii", true, with_values<open_nifti>},
+    {".nii.gz", true, with_values<open_nifti>},
+    {".tif", true, with_values<open_tiff>},
+    {".tiff", true, with_values<open_tiff>},
+    {".dcm", true, with_values<open_dicom>},
     {".vdb", true,
      [](const Path& path, const Options& options) {
        return open_vdb(path, options.threshold, options.grid);
      }},
-    {".vox", false,
-     [](const Path& path, const Options& options) { return open_vox(path, options.labels); }},
-    {".schem", false, open_blocks},
-    {".schematic", false, open_blocks},
-    {".litematic", false, open_blocks},
-    {".nbt", false, open_blocks},
-    {".bt", true, open_map},
-    {".ot", true, open_map},
+    {".vox", false, with_labels<open_vox>},
+    {".schem", false, with_labels<open_schematic>},
+    {".schematic", false, with_labels<open_schematic>},
+    {".litematic", false, with_labels<open_schematic>},
+    {".nbt", false, with_labels<open_schematic>},
+    {".bt", true,
+     [](const Path& path, const Options& options) {
+       return open_octomap(path, options.threshold);
+     }},
+    {".ot", true,
+     [](const Path& path, const Options& options) {
+       return open_octomap(path, options.threshold);
+     }},
 };
 
 /// Opens the files of a folder as slices.
@@ -125,7 +105,7 @@ std::unique_ptr<VoxelSource> open_slices(const Path& folder, const Options& opti
   const bool has_png = has(".png"), has_tiff = has(".tif") || has(".tiff");
   if (has_png && has_tiff)
     throw Error(folder.string(), "", "the folder has .png and .tif files: which are the slices?");
-  if (has_tiff) return open_tiff(folder, options.threshold, options.labels);
+  if (has_tiff) return with_values<open_tiff>(folder, options);
   // Files of DICOM may have any names.
   if (!has_png && has_dicom(folder)) return open_dicom(folder, options.threshold, options.labels);
   return open_png_slices(folder, options.threshold,

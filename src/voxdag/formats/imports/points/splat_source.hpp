@@ -1,5 +1,5 @@
 #pragma once
-/// What the sources of compressed Gaussian splats share.
+/// The base class of the sources of compressed Gaussian splats, and their rotations.
 #include <algorithm>
 #include <array>
 #include <cmath>

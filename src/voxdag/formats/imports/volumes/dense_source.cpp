@@ -101,6 +101,8 @@ class DenseSource : public VoxelSource {
       throw Error(file_.path.string(), ErrorPlace::byte(file_.data.text().size()),
                   "truncated: the data begin at byte " + std::to_string(file_.begin));
     if (is_raw()) check_length();
+    if (file_.encoding == Encoding::kSlices && slice_bytes() >= kMaxSliceBytes)
+      throw Error(file_.path.string(), "header", "a slice has more than a GiB");
     file_.volume.has_values = !file_.channels.empty();
     const std::string wanted = file_.volume.has_labels ? "labels" : "channels";
     if ((file_.volume.has_labels || file_.volume.has_values) &&
@@ -180,6 +182,8 @@ class DenseSource : public VoxelSource {
       case Encoding::kAscii:
       case Encoding::kHex:
         return with_text(read);
+      case Encoding::kSlices:
+        return with_slices(read);
     }
   }
 
@@ -202,6 +206,29 @@ class DenseSource : public VoxelSource {
       for (std::size_t i = 0; i < bytes.size(); i += channels, ++next)
         for (std::size_t c = 0; c < channels; ++c)
           bytes[i + c] = static_cast<std::byte>(next[c * plane]);
+    });
+  }
+
+  std::uint64_t slice_bytes() const {
+    return file_.volume.size[0] * file_.volume.size[1] * file_.volume.voxel_bytes();
+  }
+
+  template <class Read>
+  void with_slices(const Read& read) const {
+    std::vector<std::byte> slice(static_cast<std::size_t>(slice_bytes()));
+    std::size_t at = slice.size();
+    std::uint64_t z = 0;
+    read([&](std::span<std::byte> bytes) {
+      while (!bytes.empty()) {
+        if (at == slice.size()) {
+          file_.read_slice(z++, slice);
+          at = 0;
+        }
+        const std::size_t count = std::min(bytes.size(), slice.size() - at);
+        std::copy_n(slice.data() + at, count, bytes.data());
+        bytes = bytes.subspan(count);
+        at += count;
+      }
     });
   }
 

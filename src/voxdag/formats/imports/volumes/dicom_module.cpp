@@ -16,7 +16,7 @@
 #include "voxdag/core/io/confined_child.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/printable.hpp"
-#include "voxdag/formats/imports/volumes/slice_stack.hpp"
+#include "voxdag/formats/imports/volumes/slice_files.hpp"
 
 namespace voxdag {
 namespace {
@@ -24,7 +24,7 @@ namespace {
 const gdcm::Tag kModality(0x0008, 0x0060), kSeries(0x0020, 0x000e), kPosition(0x0020, 0x0032),
     kRows(0x0028, 0x0010), kPixelData(0x7fe0, 0x0010);
 
-/// What the child says of a file.
+/// The header of a file, as the child writes it to its parent.
 struct DicomHeader {
   char error[200] = {};  ///< Why there is no header; empty: there is one.
   bool has_image = false, has_position = false;
@@ -269,7 +269,8 @@ std::vector<char> decode(const DicomFile& file, std::size_t bytes) {
 }
 
 VoxelSource* open_dicom_in_module(const std::filesystem::path& path,
-                                  std::optional<double> threshold, bool has_labels) {
+                                  std::optional<double> threshold, bool has_labels,
+                                  const std::vector<ChannelRequest>& channels) {
   auto files = std::make_shared<std::vector<DicomFile>>(read_headers(path));
   const double distance = sort_images(path, *files);
   const DicomFile first = files->front();
@@ -277,7 +278,10 @@ VoxelSource* open_dicom_in_module(const std::filesystem::path& path,
     throw Error(path.string(), "",
                 "holds a CT, whose air is not 0: give a threshold in Hounsfield units (bone is "
                 "above some 300)");
-  SliceStack stack;
+  DenseFile stack;
+  stack.path = path;
+  stack.encoding = Encoding::kSlices;
+  stack.channels = channels;
   DenseVolume& volume = stack.volume;
   volume.size = {first.size[0], first.size[1], first.size[2] * files->size()};
   volume.threshold = threshold;
@@ -311,7 +315,7 @@ VoxelSource* open_dicom_in_module(const std::filesystem::path& path,
   const std::size_t slice = values * bytes_of(stored);
   const std::size_t frames = first.size[2];
   const auto frames_of_file = std::make_shared<std::vector<char>>();
-  stack.read = [=](std::uint64_t z, std::span<std::byte> bytes) {
+  stack.read_slice = [=](std::uint64_t z, std::span<std::byte> bytes) {
     const DicomFile& file = (*files)[static_cast<std::size_t>(z) / frames];
     if (z % frames == 0) *frames_of_file = decode(file, slice * frames);
     const char* const begin = frames_of_file->data() + (z % frames) * slice;
@@ -327,7 +331,7 @@ VoxelSource* open_dicom_in_module(const std::filesystem::path& path,
       }
     });
   };
-  return make_slice_source(path, std::move(stack)).release();
+  return make_dense_source(std::move(stack)).release();
 }
 
 }  // namespace

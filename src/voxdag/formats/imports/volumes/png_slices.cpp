@@ -6,7 +6,7 @@
 #include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/volumes/dense_volume.hpp"
-#include "voxdag/formats/imports/volumes/slice_stack.hpp"
+#include "voxdag/formats/imports/volumes/slice_files.hpp"
 #include "voxdag/formats/imports/volumes/value_test.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
 #include "voxdag/image/image_limits.hpp"

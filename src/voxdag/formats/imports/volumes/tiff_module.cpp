@@ -13,7 +13,7 @@
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/lower_case.hpp"
 #include "voxdag/core/printable.hpp"
-#include "voxdag/formats/imports/volumes/slice_stack.hpp"
+#include "voxdag/formats/imports/volumes/slice_files.hpp"
 
 namespace voxdag {
 namespace {
@@ -122,7 +122,7 @@ std::optional<double> number_after(const std::string& text, const std::string& k
   return value;
 }
 
-/// What ImageJ and OME write about a stack.
+/// The number and the spacing of a stack's slices, as ImageJ and OME write them.
 struct Description {
   std::uint64_t slices = 1;
   bool has_slices = false;
@@ -350,10 +350,13 @@ class TiffPages {
 };
 
 VoxelSource* open_tiff_in_module(const std::filesystem::path& path, std::optional<double> threshold,
-                                 bool has_labels) {
+                                 bool has_labels, const std::vector<ChannelRequest>& channels) {
   const auto pages = std::make_shared<TiffPages>(path, std::filesystem::is_directory(path));
   const Page& page = pages->page();
-  SliceStack stack;
+  DenseFile stack;
+  stack.path = path;
+  stack.encoding = Encoding::kSlices;
+  stack.channels = channels;
   stack.volume.size = {page.width, page.height, pages->count()};
   stack.volume.threshold = threshold;
   stack.volume.has_labels = has_labels;
@@ -379,8 +382,10 @@ VoxelSource* open_tiff_in_module(const std::filesystem::path& path, std::optiona
     placement.is_known = stack.has_place = true;
   }
   stack.map = VolumeMap(path, stack.volume.size, placement, stack.warnings);
-  stack.read = [pages](std::uint64_t z, std::span<std::byte> bytes) { pages->read(z, bytes); };
-  return make_slice_source(path, std::move(stack)).release();
+  stack.read_slice = [pages](std::uint64_t z, std::span<std::byte> bytes) {
+    pages->read(z, bytes);
+  };
+  return make_dense_source(std::move(stack)).release();
 }
 
 }  // namespace

@@ -65,7 +65,8 @@ std::unique_ptr<VoxelSource> open_png_slices(const std::filesystem::path& folder
 /// libtiff reads the file, in a module of its own, voxdag_tiff.so.
 std::unique_ptr<VoxelSource> open_tiff(const std::filesystem::path& path,
                                        std::optional<double> threshold,
-                                       const LabelRequest& labels = {});
+                                       const LabelRequest& labels = {},
+                                       const std::vector<ChannelRequest>& channels = {});
 
 /// Opens a series of DICOM: the images in a folder, or one file with one frame or several. The
 /// images are placed by their position and orientation, in millimetres: x points to the patient's
@@ -76,7 +77,8 @@ std::unique_ptr<VoxelSource> open_tiff(const std::filesystem::path& path,
 /// GDCM reads the files, in a module of its own, voxdag_dicom.so, and there in a ConfinedChild.
 std::unique_ptr<VoxelSource> open_dicom(const std::filesystem::path& path,
                                         std::optional<double> threshold,
-                                        const LabelRequest& labels = {});
+                                        const LabelRequest& labels = {},
+                                        const std::vector<ChannelRequest>& channels = {});
 
 /// Returns whether the name `a` comes before `b` if numbers in them are compared by value.
 bool is_before_by_numbers(std::string_view a, std::string_view b);

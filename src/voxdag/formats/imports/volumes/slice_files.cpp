@@ -1,4 +1,4 @@
-#include "voxdag/formats/imports/volumes/slice_stack.hpp"
+#include "voxdag/formats/imports/volumes/slice_files.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -27,82 +27,21 @@ std::string_view cut_number(std::string_view& name) {
   return digits;
 }
 
-class SliceSource : public VoxelSource {
- public:
-  explicit SliceSource(SliceStack stack) : stack_(std::move(stack)) {
-    if (stack_.volume.channels == 4)
-      with_bytes([&](const FillBytes& fill) {
-        stack_.volume.has_opaque_alpha = has_opaque_alpha(stack_.volume, fill);
-      });
-  }
-
-  bool has_points() const override { return false; }
-  bool has_colors() const override { return stack_.volume.has_colors(); }
-  bool has_labels() const override { return stack_.volume.has_labels; }
-  std::optional<Grid> grid() const override { return stack_.map.grid(); }
-  bool has_place() const override { return stack_.has_place; }
-  std::vector<std::string> warnings() const override { return stack_.warnings; }
-
-  void visit_all(const VisitBatch& visit) const override {
-    with_bytes([&](const FillBytes& fill) {
-      visit_volume(stack_.volume, fill,
-                   [&](const VoxelBatch& batch) { stack_.map.visit_cubes(batch, visit); });
-    });
-  }
-
- private:
-  /// Calls read(fill), where fill() gives the bytes of the volume.
-  template <class Read>
-  void with_bytes(const Read& read) const {
-    const DenseVolume& volume = stack_.volume;
-    std::vector<std::byte> slice(
-        static_cast<std::size_t>(volume.size[0] * volume.size[1] * volume.voxel_bytes()));
-    std::size_t at = slice.size();
-    std::uint64_t z = 0;
-    read([&](std::span<std::byte> bytes) {
-      while (!bytes.empty()) {
-        if (at == slice.size()) {
-          stack_.read(z++, slice);
-          at = 0;
-        }
-        const std::size_t count = std::min(bytes.size(), slice.size() - at);
-        std::copy_n(slice.data() + at, count, bytes.data());
-        bytes = bytes.subspan(count);
-        at += count;
-      }
-    });
-  }
-
-  SliceStack stack_;
-};
-
 /// Opens a file by a module.
 std::unique_ptr<VoxelSource> open_by_module(const char* file, const char* name,
                                             const std::string& library,
                                             const std::filesystem::path& path,
-                                            std::optional<double> threshold, bool has_labels) {
+                                            std::optional<double> threshold, bool has_labels,
+                                            const std::vector<ChannelRequest>& channels) {
   std::string reason;
   const auto* const module = static_cast<const SliceModule*>(load_module(file, name, reason));
   if (module == nullptr)
     throw Error(path.string(), "",
                 "is read by a module that is built where " + library + " is installed: " + reason);
-  return std::unique_ptr<VoxelSource>(module->open(path, threshold, has_labels));
+  return std::unique_ptr<VoxelSource>(module->open(path, threshold, has_labels, channels));
 }
 
 }  // namespace
-
-std::unique_ptr<VoxelSource> make_slice_source(const std::filesystem::path& path,
-                                               SliceStack stack) {
-  const DenseVolume& volume = stack.volume;
-  check_volume_size(path, volume.size);
-  if (volume.size[0] * volume.size[1] * volume.voxel_bytes() >= kMaxSliceBytes)
-    throw Error(path.string(), "header", "a slice has more than a GiB");
-  if (volume.has_labels && (volume.channels > 1 || is_real(volume.type)))
-    throw Error(path.string(), "header",
-                std::string("holds ") + (volume.channels > 1 ? "colours" : "real numbers") +
-                    ", not labels");
-  return std::make_unique<SliceSource>(std::move(stack));
-}
 
 std::vector<std::string> names_of_slices(const std::filesystem::path& folder,
                                          const std::function<bool(const std::string&)>& is_slice) {
@@ -185,17 +124,17 @@ bool has_dicom(const std::filesystem::path& folder) {
 }
 
 std::unique_ptr<VoxelSource> open_tiff(const std::filesystem::path& path,
-                                       std::optional<double> threshold,
-                                       const LabelRequest& labels) {
+                                       std::optional<double> threshold, const LabelRequest& labels,
+                                       const std::vector<ChannelRequest>& channels) {
   return open_by_module(kTiffModuleFile, kTiffModuleName, "libtiff (libtiff-dev)", path, threshold,
-                        wants_labels(labels));
+                        wants_labels(labels), channels);
 }
 
 std::unique_ptr<VoxelSource> open_dicom(const std::filesystem::path& path,
-                                        std::optional<double> threshold,
-                                        const LabelRequest& labels) {
+                                        std::optional<double> threshold, const LabelRequest& labels,
+                                        const std::vector<ChannelRequest>& channels) {
   return open_by_module(kDicomModuleFile, kDicomModuleName, "GDCM (libgdcm-dev)", path, threshold,
-                        wants_labels(labels));
+                        wants_labels(labels), channels);
 }
 
 }  // namespace voxdag
