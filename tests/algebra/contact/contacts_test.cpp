@@ -9,8 +9,8 @@
 #include <memory>
 #include <random>
 
+#include "algebra/contact/contact_world.hpp"
 #include "algebra/voxel_grid.hpp"
-#include "support/brute_svdag.hpp"
 #include "support/error_of.hpp"
 #include "support/voxel_sets.hpp"
 #include "support/with_threads.hpp"
@@ -18,120 +18,6 @@
 
 namespace voxdag {
 namespace {
-
-constexpr double kNone = HUGE_VAL;
-
-/// Returns the point of the cube of a voxel that is nearest to a point. Units are voxels.
-Vec3d nearest_in(Vec3i voxel, Vec3d p) {
-  for (int axis = 0; axis < 3; ++axis)
-    p[axis] = std::clamp(p[axis], double(voxel[axis]), double(voxel[axis]) + 1);
-  return p;
-}
-double point_gap(Vec3i voxel, Vec3d p) { return length(p - nearest_in(voxel, p)); }
-
-/// Returns the distance from a segment to the cube of a voxel: the least of the distances at its
-/// ends and at the least points of all 27 sums of squares that the squared distance consists of.
-double segment_gap(Vec3i voxel, Vec3d from, Vec3d to) {
-  const Vec3d along = to - from;
-  double least = std::min(point_gap(voxel, from), point_gap(voxel, to));
-  for (int pattern = 0; pattern < 27; ++pattern) {
-    double squares = 0, products = 0;
-    for (int axis = 0, rest = pattern; axis < 3; ++axis, rest /= 3) {
-      if (rest % 3 == 0) continue;
-      const double plane = voxel[axis] + rest % 3 - 1;
-      squares += along[axis] * along[axis];
-      products += along[axis] * (plane - from[axis]);
-    }
-    if (squares > 0)
-      least =
-          std::min(least, point_gap(voxel, from + along * std::clamp(products / squares, 0., 1.)));
-  }
-  return least;
-}
-
-double gap(Vec3i voxel, const Capsule& shape) {
-  return segment_gap(voxel, shape.from, shape.to) - shape.radius;
-}
-
-Capsule moved(const Capsule& shape, Vec3d motion) {
-  return {shape.from + motion, shape.to + motion, shape.radius};
-}
-
-/// Returns the part of a motion after which a capsule touches a voxel that it approaches, kNone if
-/// it does not: by bisection, because the gap falls to its least value and then grows. NaN if
-/// rounding decides.
-double touch_time(Vec3i voxel, const Capsule& shape, Vec3d motion) {
-  const auto gap_at = [&](double t) { return gap(voxel, moved(shape, motion * t)); };
-  if (gap_at(0) > length(motion)) return kNone;
-  double low = 0, high = 1;
-  for (int i = 0; i < 60; ++i) {
-    const double a = low + (high - low) / 3, b = high - (high - low) / 3;
-    const bool is_left = gap_at(a) <= gap_at(b);
-    (is_left ? high : low) = is_left ? b : a;
-  }
-  const double least = gap_at(high);
-  if (std::fabs(least) < 1e-6) return std::nan("");
-  if (least > 0) return kNone;
-  if (gap_at(0) <= 0) {
-    if (segment_gap(voxel, shape.from, shape.to) == 0) return 0;
-    return high < 1e-6 ? kNone : 0;
-  }
-  low = 0;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = (low + high) / 2;
-    (gap_at(middle) > 0 ? low : high) = middle;
-  }
-  return low;
-}
-
-/// Random shapes in and around a grid of 2^levels, in voxels.
-class Shapes {
- public:
-  Shapes(int levels, unsigned seed) : side_(1 << levels), random_(seed) {}
-
-  double number(double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random_);
-  }
-  Vec3d point() {
-    const double reach = 0.3 * side_;
-    return {number(-reach, side_ + reach), number(-reach, side_ + reach),
-            number(-reach, side_ + reach)};
-  }
-  Vec3d vector(double most) {
-    return {number(-most, most), number(-most, most), number(-most, most)};
-  }
-  /// Returns points, spheres, segments and capsules.
-  Capsule capsule() {
-    const Vec3d from = point();
-    const int kind = static_cast<int>(random_() % 4);
-    return {from, (kind & 1) != 0 ? from + vector(0.4 * side_) : from,
-            (kind & 2) != 0 ? number(0, 0.2 * side_) : 0};
-  }
-
- private:
-  int side_;
-  std::mt19937 random_;
-};
-
-/// A grid whose voxels are not of size 1. `world` are functions from voxels to world units.
-struct World {
-  Svdag dag;
-  ContactScene scene;
-
-  World(int levels, const std::vector<Vec3i>& voxels) : dag(brute_svdag(levels, voxels)) {
-    scene.dag = dag.view();
-    scene.grid.levels = levels;
-    scene.grid.origin = {-3, 0.5, 20};
-    scene.grid.voxel_size = 0.25;  // Exact, so that voxels stay what they are.
-  }
-  Vec3d place(Vec3d voxels) const { return scene.grid.to_world(voxels); }
-  double size(double voxels) const { return voxels * scene.grid.voxel_size; }
-  Capsule shape(const Capsule& voxels) const {
-    return {place(voxels.from), place(voxels.to), size(voxels.radius)};
-  }
-};
-
-constexpr double kClose = 1e-9;  ///< Rounding of coordinates and of two formulas.
 
 TEST(Contacts, TheClosestVoxelIsTheClosestOfAll) {
   for (const NamedVoxels& set : voxel_sets(4, 7)) {
@@ -165,99 +51,6 @@ TEST(Contacts, TheClosestVoxelIsTheClosestOfAll) {
       EXPECT_FALSE(closest(world.scene, world.shape(shape), world.size(least - 1e-6)).is_found);
     }
   }
-}
-
-TEST(Contacts, ASweepEndsAtTheFirstVoxelThatItMeets) {
-  int hits = 0, skipped = 0;
-  for (const NamedVoxels& set : voxel_sets(4, 8)) {
-    if (set.voxels.size() > 300) continue;
-    SCOPED_TRACE(set.name);
-    const World world(4, set.voxels);
-    Shapes shapes(4, 2);
-    for (int i = 0; i < 40; ++i) {
-      Capsule shape = shapes.capsule();
-      shape.radius = std::max(shape.radius, 0.01);  // A gap that falls below 0 can be bisected.
-      const Vec3d motion = shapes.vector(16);
-      double first = kNone;
-      bool is_sure = true;
-      for (const Vec3i voxel : set.voxels) {
-        const double t = touch_time(voxel, shape, motion);
-        is_sure = is_sure && !std::isnan(t);
-        if (t < first) first = t;
-      }
-      if (!is_sure) {
-        ++skipped;
-        continue;
-      }
-      const SweepHit hit = sweep(world.scene, world.shape(shape), motion * world.size(1));
-      ASSERT_EQ(hit.hit, first != kNone) << i;
-      if (!hit.hit) continue;
-      ++hits;
-      ASSERT_NEAR(hit.t, first, 1e-7) << i;
-      const Capsule there = moved(shape, motion * hit.t);
-      const double core_gap = segment_gap(hit.voxel, there.from, there.to);
-      EXPECT_LE(core_gap, shape.radius + 2 * kTouch);
-      EXPECT_NEAR(point_gap(hit.voxel, world.scene.grid.to_grid(hit.point)), 0, kClose);
-      if (hit.t > 0) {
-        EXPECT_GE(core_gap, shape.radius - kClose);
-        EXPECT_NEAR(length(hit.normal), 1, kClose);
-        EXPECT_LT(dot(hit.normal, motion), 0);
-      }
-    }
-  }
-  EXPECT_GT(hits, 40);
-  EXPECT_LT(skipped, hits / 10);
-}
-
-TEST(Contacts, SweepsAgainstFacesEdgesAndCornersAreThoseOfGeometry) {
-  const World world(4, {{8, 8, 8}});
-  const auto sweep_of = [&](Vec3d from, double radius, Vec3d motion) {
-    return sweep(world.scene, world.shape(Capsule::sphere(from, radius)), motion * world.size(1));
-  };
-  const SweepHit face = sweep_of({8.5, 8.25, 14}, 2, {0, 0, -10});
-  ASSERT_TRUE(face.hit);
-  EXPECT_NEAR(face.t, 0.3, kClose);  // From 14 to 9 + 2.
-  EXPECT_EQ(face.normal, (Vec3d{0, 0, 1}));
-  EXPECT_EQ(world.scene.grid.to_grid(face.point), (Vec3d{8.5, 8.25, 9}));
-  // The sphere passes the edge x = 9, z = 9 at a distance of 1.2 to the right.
-  const SweepHit edge = sweep_of({10.2, 8.5, 19}, 2, {0, 0, -10});
-  EXPECT_NEAR(edge.t, (10 - 1.6) / 10, kClose);
-  EXPECT_NEAR(edge.normal.x, 0.6, kClose);
-  EXPECT_NEAR(edge.normal.z, 0.8, kClose);
-  const SweepHit corner = sweep_of({19, 19, 19}, std::sqrt(3.0), {-10, -10, -10});
-  EXPECT_NEAR(corner.t, 0.9, kClose);
-  EXPECT_NEAR(corner.normal.y, std::sqrt(1 / 3.0), kClose);
-  EXPECT_NEAR(length(world.scene.grid.to_grid(corner.point) - Vec3d{9, 9, 9}), 0, kClose);
-  // A point, which needs its direction before it is there.
-  const SweepHit point = sweep_of({19, 8.5, 12}, 0, {-20, 0, -7});
-  EXPECT_NEAR(point.t, 0.5, kClose);
-  EXPECT_EQ(point.normal, (Vec3d{1, 0, 0}));
-  // Passing at a distance, ending before, and moving away.
-  EXPECT_FALSE(sweep_of({11.01, 8.5, 19}, 2, {0, 0, -30}).hit);
-  EXPECT_FALSE(sweep_of({8.5, 8.5, 19}, 2, {0, 0, -7.99}).hit);
-  EXPECT_TRUE(sweep_of({8.5, 8.5, 19}, 2, {0, 0, -8}).hit);
-  EXPECT_FALSE(sweep_of({8.5, 8.5, 12}, 2, {0, 0, 5}).hit);
-}
-
-TEST(Contacts, AShapeThatTouchesAtTheStartMayLeaveAndSlideButNotApproach) {
-  const World world(3, voxels_where(3, [](Vec3i v) { return v.z < 2; }));
-  for (const double radius : {0.5, 1.75})
-    for (const double depth : {0.0, 0.25}) {
-      const Capsule ball = world.shape(Capsule::sphere({4.3, 4.6, 2 + radius - depth}, radius));
-      const auto moves = [&](Vec3d motion) { return sweep(world.scene, ball, motion); };
-      EXPECT_TRUE(overlaps(world.scene, ball));
-      EXPECT_FALSE(moves({0, 0, 1}).hit);
-      EXPECT_FALSE(moves({0, 0, 0}).hit);
-      ASSERT_TRUE(moves({0, 0, -1}).hit);
-      EXPECT_EQ(moves({0, 0, -1}).t, 0);
-      EXPECT_EQ(moves({0, 0, -1}).normal, (Vec3d{0, 0, 1}));
-      EXPECT_EQ(moves({0.4, 0.3, 0.001}).hit, depth > 0);  // Edges of the next voxels stop it.
-    }
-  // A core that touches cannot tell where out is.
-  const SweepHit inside = sweep(world.scene, world.shape(Capsule::sphere({4, 4, 1}, 1)), {0, 0, 9});
-  EXPECT_TRUE(inside.hit);
-  EXPECT_EQ(inside.t, 0);
-  EXPECT_EQ(inside.normal, (Vec3d{}));
 }
 
 /// Returns the distance between a box and the cube of a voxel: alternating projections go to it.
@@ -478,14 +271,6 @@ TEST(Contacts, WhatIsNoShapeIsRefusedWithItsNumber) {
   box.axes[1] = {0, 2, 0};
   EXPECT_EQ(error_of([&] { overlaps(world.scene, box); }),
             "the axes of the box do not have unit length");
-}
-
-TEST(Contacts, LongMotionsEndAtTheVoxel) {
-  const World world(4, {{8, 8, 8}});
-  const Vec3d far = world.place({8.5, 8.5, 1e9 + 8.5});
-  const SweepHit hit = sweep(world.scene, Capsule::sphere(far, world.size(2)), {0, 0, -1e9});
-  ASSERT_TRUE(hit.hit);
-  EXPECT_NEAR(hit.t * 1e9, far.z - world.place({0, 0, 11}).z, 1e-6);
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
-// Splats of .spz and .sog, against values computed from the definitions of the formats.
+// Splats of .spz and .sog against values computed from the definitions, those of texts and .splat
+// against the DAG of the PLY file with the same splats.
 #include <webp/encode.h>
 #include <zstd.h>
 
 #include <cmath>
 #include <random>
 
+#include "raw_splats.hpp"
+#include "support/error_of.hpp"
 #include "volume_files.hpp"
 #include "voxdag/formats/exports/zip_file.hpp"
 
@@ -234,6 +237,43 @@ TEST_F(SplatFiles, SogIsRead) {
   EXPECT_TRUE(has(error(), "has no 'c.webp'")) << error();
   write_sog("{}");
   EXPECT_TRUE(has(error(), "meta.json: is damaged")) << error();
+}
+
+TEST_F(SplatsTest, TextsAndSplatFilesAreRead) {
+  const std::vector<RawSplat> splats = random_splats(60, 10, 1.5, 12);
+  ImportOptions with = options();
+  with.resolution = 40;
+  EXPECT_EQ(import(ply_of(splats, true), with).dag, import(ply_of(splats), with).dag);
+  // A .splat file has rounded colours and rotations.
+  std::string bytes;
+  std::vector<RawSplat> rounded;
+  for (RawSplat s : splats) {
+    const auto byte = [](double value) {
+      return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0l, 255l));
+    };
+    for (const float value : s.center)
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    for (const float value : s.log_scale) {
+      const auto scale = static_cast<float>(std::exp(double{value}));
+      bytes.append(reinterpret_cast<const char*>(&scale), sizeof scale);
+    }
+    for (const float value : s.color)
+      bytes.push_back(static_cast<char>(byte(255 * (0.5 + 0.28209479177387814 * double{value}))));
+    const std::uint8_t alpha = byte(255 / (1 + std::exp(-double{s.opacity})));
+    bytes.push_back(static_cast<char>(alpha));
+    s.opacity = static_cast<float>(std::log(alpha / 255.0) - std::log1p(-alpha / 255.0));
+    for (float& part : s.rotation) {
+      const std::uint8_t q = byte(part * 64 + 128);
+      bytes.push_back(static_cast<char>(q));
+      part = static_cast<float>(q - 128);
+    }
+    rounded.push_back(s);
+  }
+  with.splats.opacity = 0.2;
+  const ImportResult result = import_voxels(*open(bytes, "s.splat"), with);
+  EXPECT_EQ(result.dag, import(ply_of(rounded), with).dag);
+  EXPECT_NE(error_of([&] { open(bytes.substr(1), "s.splat"); }).find("inside a record"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "raw_splats.hpp"
 #include "support/brute_svdag.hpp"
 #include "support/error_of.hpp"
-#include "support/temp_dir.hpp"
 #include "support/with_threads.hpp"
 #include "voxdag/formats/imports/colors/linear_color.hpp"
 #include "voxdag/formats/imports/import_voxels.hpp"
@@ -23,60 +23,6 @@
 
 namespace voxdag {
 namespace {
-
-/// A splat as a file stores it.
-struct RawSplat {
-  std::array<float, 3> center, log_scale, color;
-  std::array<float, 4> rotation;
-  float opacity;
-};
-
-std::vector<RawSplat> random_splats(int count, double side, double scale, unsigned seed) {
-  std::mt19937 rng(seed);
-  const auto any = [&](double lo, double hi) {
-    return static_cast<float>(std::uniform_real_distribution<>(lo, hi)(rng));
-  };
-  std::vector<RawSplat> splats;
-  for (int i = 0; i < count; ++i) {
-    RawSplat splat{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      splat.center[k] = any(0, side);
-      splat.log_scale[k] = any(std::log(scale) - 4, std::log(scale));
-      splat.color[k] = any(-3, 3);
-    }
-    for (float& part : splat.rotation) part = any(-2, 2);
-    splat.opacity = any(-5, 6);
-    splats.push_back(splat);
-  }
-  return splats;
-}
-
-/// Returns a PLY file. The properties are in an order of their own, among others.
-std::string ply_of(const std::vector<RawSplat>& splats, bool is_text = false) {
-  std::string ply = std::string("ply\nformat ") + (is_text ? "ascii" : "binary_little_endian") +
-                    " 1.0\nelement vertex " + std::to_string(splats.size()) + "\n";
-  for (const char* name :
-       {"rot_0", "rot_1", "rot_2", "rot_3", "x", "y", "z", "nx", "f_dc_0", "f_dc_1", "f_dc_2",
-        "f_rest_0", "opacity", "scale_0", "scale_1", "scale_2"})
-    ply += std::string("property float ") + name + "\n";
-  ply += "end_header\n";
-  for (const RawSplat& s : splats) {
-    const float row[] = {s.rotation[0], s.rotation[1],  s.rotation[2],  s.rotation[3],
-                         s.center[0],   s.center[1],    s.center[2],    0,
-                         s.color[0],    s.color[1],     s.color[2],     7,
-                         s.opacity,     s.log_scale[0], s.log_scale[1], s.log_scale[2]};
-    for (const float value : row) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%.9g ", static_cast<double>(value));
-      if (is_text)
-        ply += text;
-      else
-        ply.append(reinterpret_cast<const char*>(&value), sizeof value);
-    }
-    if (is_text) ply += "\n";
-  }
-  return ply;
-}
 
 /// The sums of a voxel, computed from the definition.
 struct BruteSum {
@@ -131,25 +77,6 @@ std::vector<BruteSum> brute_sums(const std::vector<RawSplat>& splats, const Grid
   }
   return sums;
 }
-
-class SplatsTest : public testing::Test {
- protected:
-  std::unique_ptr<VoxelSource> open(const std::string& bytes, const char* name = "s.ply") const {
-    write_text(dir_ / name, bytes);
-    return open_voxel_source(dir_ / name);
-  }
-  ImportOptions options() const {
-    ImportOptions options;
-    options.folder = dir_.path();
-    options.color_bound = 0;
-    return options;
-  }
-  ImportResult import(const std::string& bytes, const ImportOptions& options) const {
-    return import_voxels(*open(bytes), options);
-  }
-
-  TempDir dir_;
-};
 
 /// Expects the voxels of the definition. A sum that is nearer to the threshold than `slack` may be
 /// on either side; at most `unsure` are.
@@ -267,43 +194,6 @@ TEST_F(SplatsTest, AVoxelHasTheMeanColourOfItsSplats) {
       EXPECT_NEAR(channels[c], 255 * linear_to_srgb(static_cast<float>(mean)), 0.6);
     }
   });
-}
-
-TEST_F(SplatsTest, TextsAndSplatFilesAreRead) {
-  const std::vector<RawSplat> splats = random_splats(60, 10, 1.5, 12);
-  ImportOptions with = options();
-  with.resolution = 40;
-  EXPECT_EQ(import(ply_of(splats, true), with).dag, import(ply_of(splats), with).dag);
-  // A .splat file has rounded colours and rotations.
-  std::string bytes;
-  std::vector<RawSplat> rounded;
-  for (RawSplat s : splats) {
-    const auto byte = [](double value) {
-      return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0l, 255l));
-    };
-    for (const float value : s.center)
-      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-    for (const float value : s.log_scale) {
-      const auto scale = static_cast<float>(std::exp(double{value}));
-      bytes.append(reinterpret_cast<const char*>(&scale), sizeof scale);
-    }
-    for (const float value : s.color)
-      bytes.push_back(static_cast<char>(byte(255 * (0.5 + 0.28209479177387814 * double{value}))));
-    const std::uint8_t alpha = byte(255 / (1 + std::exp(-double{s.opacity})));
-    bytes.push_back(static_cast<char>(alpha));
-    s.opacity = static_cast<float>(std::log(alpha / 255.0) - std::log1p(-alpha / 255.0));
-    for (float& part : s.rotation) {
-      const std::uint8_t q = byte(part * 64 + 128);
-      bytes.push_back(static_cast<char>(q));
-      part = static_cast<float>(q - 128);
-    }
-    rounded.push_back(s);
-  }
-  with.splats.opacity = 0.2;
-  const ImportResult result = import_voxels(*open(bytes, "s.splat"), with);
-  EXPECT_EQ(result.dag, import(ply_of(rounded), with).dag);
-  EXPECT_NE(error_of([&] { open(bytes.substr(1), "s.splat"); }).find("inside a record"),
-            std::string::npos);
 }
 
 TEST_F(SplatsTest, PackedSplatsAreRead) {
