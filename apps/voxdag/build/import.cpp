@@ -243,12 +243,10 @@ void add_import_command(const Command& program, Session& session) {
           "file", arguments->files, [](const std::string& text) { return text; }, "FILE...",
           "One file, several, a folder of them or a pattern. Points: .ply, .las, .pcd, .npy of N x "
           "3 floats, or texts: .xyz, .txt, .csv, .asc, .pts. Gaussian splats: .ply, .splat, .spz, "
-          ".sog. "
-          "Voxels: .vox, .binvox, .schem, .schematic, .litematic, .nbt (Minecraft), .bt, .ot "
-          "(OctoMap), or .npy of N x 3 integers. Volumes: .npy of X x Y x Z, .nrrd, "
-          ".nhdr, .nii, .tif, .dcm, .vdb, or a folder of .png or .tif slices or DICOM images. Each "
-          "of "
-          "them may also be compressed (.gz, .zst). -: standard input")
+          ".sog. Voxels: .vox, .binvox, .schem, .schematic, .litematic, .nbt (Minecraft), .bt, .ot "
+          "(OctoMap), or .npy of N x 3 integers. Volumes: .npy of X x Y x Z, .nrrd, .nhdr, .nii, "
+          ".tif, .dcm, .vdb, or a folder of .png or .tif slices or DICOM images. Each of them may "
+          "also be compressed (.gz, .zst). -: standard input")
       .required();
   command.text(
       "-o,--output", arguments->output, "OUT",

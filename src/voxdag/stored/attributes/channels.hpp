@@ -179,7 +179,7 @@ struct CellChannels {
   ChannelsView view() const { return {words.empty() ? nullptr : words.data()}; }
 };
 
-/// What a channel is, without its values.
+/// Name, kind and bound of a channel.
 struct ChannelSpec {
   std::string name;
   ChannelKind kind = ChannelKind::kF32;
