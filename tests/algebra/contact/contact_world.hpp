@@ -10,7 +10,7 @@
 #include "voxdag/algebra/contact/contacts.hpp"
 
 namespace voxdag {
-inline constexpr double kNone = HUGE_VAL;
+inline constexpr double kNever = HUGE_VAL;
 
 /// Returns the point of the cube of a voxel that is nearest to a point. Units are voxels.
 inline Vec3d nearest_in(Vec3i voxel, Vec3d p) {
@@ -48,12 +48,12 @@ inline Capsule moved(const Capsule& shape, Vec3d motion) {
   return {shape.from + motion, shape.to + motion, shape.radius};
 }
 
-/// Returns the part of a motion after which a capsule touches a voxel that it approaches, kNone if
+/// Returns the part of a motion after which a capsule touches a voxel that it approaches, kNever if
 /// it does not: by bisection, because the gap falls to its least value and then grows. NaN if
 /// rounding decides.
 inline double touch_time(Vec3i voxel, const Capsule& shape, Vec3d motion) {
   const auto gap_at = [&](double t) { return gap(voxel, moved(shape, motion * t)); };
-  if (gap_at(0) > length(motion)) return kNone;
+  if (gap_at(0) > length(motion)) return kNever;
   double low = 0, high = 1;
   for (int i = 0; i < 60; ++i) {
     const double a = low + (high - low) / 3, b = high - (high - low) / 3;
@@ -62,10 +62,10 @@ inline double touch_time(Vec3i voxel, const Capsule& shape, Vec3d motion) {
   }
   const double least = gap_at(high);
   if (std::fabs(least) < 1e-6) return std::nan("");
-  if (least > 0) return kNone;
+  if (least > 0) return kNever;
   if (gap_at(0) <= 0) {
     if (segment_gap(voxel, shape.from, shape.to) == 0) return 0;
-    return high < 1e-6 ? kNone : 0;
+    return high < 1e-6 ? kNever : 0;
   }
   low = 0;
   for (int i = 0; i < 60; ++i) {

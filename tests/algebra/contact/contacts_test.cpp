@@ -26,7 +26,7 @@ TEST(Contacts, TheClosestVoxelIsTheClosestOfAll) {
     Shapes shapes(4, 1);
     for (int i = 0; i < 40; ++i) {
       const Capsule shape = shapes.capsule();
-      double least = kNone;
+      double least = kNever;
       for (const Vec3i voxel : set.voxels) least = std::min(least, gap(voxel, shape));
       const ClosestVoxel found = closest(world.scene, world.shape(shape));
       ASSERT_EQ(found.is_found, !set.voxels.empty());
@@ -85,7 +85,7 @@ TEST(Contacts, ABoxOverlapsVoxelsThatAlternatingProjectionsReach) {
           box.axes[1] = normalized(cross(box.axes[0], shapes.vector(1)));
           box.axes[2] = cross(box.axes[0], box.axes[1]);
         }
-        double least = kNone;
+        double least = kNever;
         for (const Vec3i voxel : set.voxels)
           if (point_gap(voxel, box.centre) <= length(box.half))
             least = std::min(least, box_gap(voxel, box));
@@ -118,7 +118,7 @@ double brute_signed(const VoxelGrid& voxels, Vec3d p) {
                     static_cast<std::int32_t>(std::floor(p.z))};
   const bool is_inside = voxels.contains(place);
   const std::int32_t side = 1 << voxels.levels();
-  double least = kNone;
+  double least = kNever;
   for (std::int32_t z = -1; z <= side; ++z)
     for (std::int32_t y = -1; y <= side; ++y)
       for (std::int32_t x = -1; x <= side; ++x)
@@ -138,7 +138,7 @@ TEST(Contacts, SignedDistancesAreThoseOfAllPlaces) {
       const double expected = brute_signed(voxels, p);
       const SignedDistance found = signed_distance(world.scene, world.place(p));
       if (set.voxels.empty()) {
-        EXPECT_EQ(found.distance, kNone);
+        EXPECT_EQ(found.distance, kNever);
         EXPECT_EQ(found.gradient, (Vec3d{}));
         continue;
       }
@@ -254,7 +254,7 @@ TEST(Contacts, WhatIsNoShapeIsRefusedWithItsNumber) {
     });
   };
   EXPECT_EQ(message({nan, 0, 0}, {}, 1, {}), "shape 1: a point is not finite");
-  EXPECT_EQ(message({}, {0, 0, kNone}, 1, {}), "shape 1: a point is not finite");
+  EXPECT_EQ(message({}, {0, 0, kNever}, 1, {}), "shape 1: a point is not finite");
   EXPECT_EQ(message({}, {}, -1, {}), "shape 1: the radius is negative");
   EXPECT_EQ(message({}, {}, nan, {}), "shape 1: the radius is not finite");
   EXPECT_EQ(message({}, {}, 1, {0, nan, 0}), "shape 1: the motion is not finite");

@@ -24,7 +24,7 @@ TEST(Sweeps, ASweepEndsAtTheFirstVoxelThatItMeets) {
       Capsule shape = shapes.capsule();
       shape.radius = std::max(shape.radius, 0.01);  // A gap that falls below 0 can be bisected.
       const Vec3d motion = shapes.vector(16);
-      double first = kNone;
+      double first = kNever;
       bool is_sure = true;
       for (const Vec3i voxel : set.voxels) {
         const double t = touch_time(voxel, shape, motion);
@@ -36,7 +36,7 @@ TEST(Sweeps, ASweepEndsAtTheFirstVoxelThatItMeets) {
         continue;
       }
       const SweepHit hit = sweep(world.scene, world.shape(shape), motion * world.size(1));
-      ASSERT_EQ(hit.hit, first != kNone) << i;
+      ASSERT_EQ(hit.hit, first != kNever) << i;
       if (!hit.hit) continue;
       ++hits;
       ASSERT_NEAR(hit.t, first, 1e-7) << i;

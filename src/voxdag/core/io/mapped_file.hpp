@@ -23,6 +23,8 @@ class MappedFile {
     kRandom       ///< Parts of it.
   };
 
+  /// Has no bytes, as an empty file.
+  MappedFile() = default;
   /// Maps the file. Throws the errors of open_input, and "cannot map: ...".
   explicit MappedFile(const std::filesystem::path& path, Access access = Access::kSoon,
                       SizeLimit limit = {});
