@@ -1,13 +1,11 @@
 /// Fuzzes the readers of points: any bytes give points or an Error. The first byte chooses the
 /// format, and whether labels are read; the others are the file.
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
 
+#include "input_file.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
 
@@ -28,29 +26,14 @@ constexpr Open kReaders[] = {
     },
     [](const Path& path, const LabelRequest&) { return voxdag::open_splat_file(path); }};
 
-/// A file in memory.
-class MemoryFile {
- public:
-  MemoryFile(const std::uint8_t* data, std::size_t size) : descriptor_(memfd_create("points", 0)) {
-    if (descriptor_ < 0 || write(descriptor_, data, size) != static_cast<ssize_t>(size)) abort();
-  }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  ~MemoryFile() { close(descriptor_); }
-  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-
- private:
-  int descriptor_;
-};
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const MemoryFile file(data + 1, size - 1);
+  const Path path = voxdag::input_file(data + 1, size - 1);
   try {
     const LabelRequest labels = data[0] >= 128 ? LabelRequest("") : std::nullopt;
-    const auto source = kReaders[data[0] % std::size(kReaders)](file.path(), labels);
+    const auto source = kReaders[data[0] % std::size(kReaders)](path, labels);
     std::uint64_t points = 0;
     source->visit_all([&](const voxdag::VoxelBatch& batch) {
       points += batch.places.size();

@@ -1,13 +1,11 @@
 /// Fuzzes the readers of volumes. The first byte chooses the reader, the threshold and whether
 /// labels are read, the rest is the file. The voxels must lie in the grid of the file, or an Error
 /// must follow.
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <string>
 
+#include "input_file.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/formats/imports/volumes/volume_sources.hpp"
 
@@ -17,21 +15,6 @@ namespace {
 /// A small file may stand for many voxels.
 constexpr std::uint64_t kMaxVoxels = std::uint64_t{1} << 20;
 struct Enough {};
-
-/// A file in memory that has a path.
-class MemoryFile {
- public:
-  MemoryFile(const std::uint8_t* data, std::size_t size) : file_(memfd_create("fuzz", 0)) {
-    if (file_ < 0 || ::write(file_, data, size) != static_cast<ssize_t>(size)) std::abort();
-  }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  ~MemoryFile() { ::close(file_); }
-  std::string path() const { return "/proc/self/fd/" + std::to_string(file_); }
-
- private:
-  int file_;
-};
 
 std::unique_ptr<VoxelSource> open_chosen(std::uint8_t choice, const std::string& path) {
   std::optional<double> threshold;
@@ -82,9 +65,9 @@ void read_all(std::uint8_t choice, const std::string& path) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const voxdag::MemoryFile file(data + 1, size - 1);
+  const std::filesystem::path path = voxdag::input_file(data + 1, size - 1);
   try {
-    voxdag::read_all(data[0], file.path());
+    voxdag::read_all(data[0], path);
   } catch (const voxdag::Error&) {
   } catch (const voxdag::Enough&) {
   }
