@@ -17,7 +17,9 @@ class SplatBrick {
  public:
   static constexpr std::int32_t kSide = 32;
 
-  explicit SplatBrick(bool has_colors) : sums_(kVoxels), colors_(has_colors ? 4 * kVoxels : 0) {}
+  /// A voxel is set if its sum is at least `least`, 1 or more.
+  SplatBrick(std::uint64_t least, bool has_colors)
+      : least_(least), sums_(kVoxels + 8), colors_(has_colors ? 4 * kVoxels + 8 : 0) {}
 
   /// Empties the brick, and moves its first voxel to `first`.
   void start(Vec3i first) {
@@ -27,10 +29,10 @@ class SplatBrick {
   /// Adds the splat to the voxels that it reaches. The arithmetic is the same on every machine.
   void add(const GridSplat& splat);
 
-  /// Calls on_block(first, voxels) for the leaf blocks that have voxels whose sum is at least
-  /// `least`, 1 or more, in Morton order. `first` is the block's first voxel in the grid.
+  /// Calls on_block(first, voxels) for the leaf blocks that have voxels which are set, in Morton
+  /// order. `first` is the block's first voxel in the grid.
   template <class OnBlock>
-  void each_block(std::uint64_t least, const OnBlock& on_block) const;
+  void each_block(const OnBlock& on_block) const;
 
   /// Returns the mean colour of a voxel that has a sum, in linear light, rounded.
   std::array<std::uint16_t, 3> mean_color(Vec3i voxel) const {
@@ -50,37 +52,34 @@ class SplatBrick {
     return static_cast<std::size_t>((v.z * kSide + v.y) * kSide + v.x);
   }
 
+  std::uint64_t least_;
   Vec3i first_{};
   std::array<std::uint32_t, kSide> touched_{};  ///< Bit y of item z: the row has sums.
-  std::vector<std::uint64_t> sums_;             ///< Of rows that are not touched: any.
+  /// The voxels of row y + 32 z that are set; of rows that are not touched: any.
+  std::array<std::uint32_t, std::size_t{kSide} * kSide> set_{};
+  std::vector<std::uint64_t> sums_;  ///< Of rows that are not touched: any.
   /// For each row: the weights of its voxels, which are the extinctions in units of 2^-20, each
   /// rounded up; then the weighted sums of red, of green and of blue.
   std::vector<std::uint64_t> colors_;
 };
 
 template <class OnBlock>
-void SplatBrick::each_block(std::uint64_t least, const OnBlock& on_block) const {
-  std::array<std::array<std::uint32_t, kSide>, kSide> rows{};
+void SplatBrick::each_block(const OnBlock& on_block) const {
+  std::array<std::uint64_t, kVoxels / 64> blocks{};
   for (std::int32_t z = 0; z < kSide; ++z)
     for (std::uint32_t left = touched_[static_cast<std::size_t>(z)]; left != 0; left &= left - 1) {
       const int y = std::countr_zero(left);
-      const std::uint64_t* const row = &sums_[place({0, y, z})];
-      std::uint32_t bits = 0;
-      for (std::uint32_t x = 0; x < kSide; ++x) bits |= std::uint32_t{row[x] >= least} << x;
-      rows[static_cast<std::size_t>(z)][static_cast<std::size_t>(y)] = bits;
-    }
-  for (std::uint64_t code = 0; code < kVoxels / 64; ++code) {
-    const Vec3i block = morton_decode(code) * 4;
-    std::uint64_t voxels = 0;
-    for (int z = 0; z < 4; ++z)
-      for (int y = 0; y < 4; ++y) {
-        const std::uint64_t x =
-            rows[static_cast<std::size_t>(block.z + z)][static_cast<std::size_t>(block.y + y)] >>
-            block.x;
-        voxels |= ((x & 3) | (x & 12) << 6) << (leaf_bits(y, 1) | leaf_bits(z, 2));
+      std::uint32_t row = set_[static_cast<std::size_t>(z * kSide + y)];
+      while (row != 0) {
+        const int x = std::countr_zero(row) & ~3;
+        const std::uint64_t four = row >> x & 15;
+        row &= ~(15u << x);
+        blocks[morton_encode({x / 4, y / 4, z / 4})] |=
+            ((four & 3) | (four & 12) << 6) << (leaf_bits(y & 3, 1) | leaf_bits(z & 3, 2));
       }
-    if (voxels != 0) on_block(first_ + block, voxels);
-  }
+    }
+  for (std::uint64_t code = 0; code < blocks.size(); ++code)
+    if (blocks[code] != 0) on_block(first_ + morton_decode(code) * 4, blocks[code]);
 }
 
 }  // namespace voxdag

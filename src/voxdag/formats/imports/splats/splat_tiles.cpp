@@ -153,7 +153,7 @@ void SplatTiles::list(std::span<const Record> records, TileSplats& tile) const {
 }
 
 void SplatTiles::add_voxels(const SplatBrick& brick, TileVoxels& voxels) const {
-  brick.each_block(placing_.least, [&](Vec3i first, std::uint64_t block) {
+  brick.each_block([&](Vec3i first, std::uint64_t block) {
     voxels.blocks.emplace_back(morton_encode(first) / 64, block);
     if (!placing_.has_colors) return;
     for (std::uint64_t left = block; left != 0; left &= left - 1) {
@@ -167,7 +167,7 @@ void SplatTiles::add_voxels(const SplatBrick& brick, TileVoxels& voxels) const {
 SplatTiles::TileVoxels SplatTiles::voxels_of(std::span<const Record> records) {
   Scratch& scratch = scratch_.local();
   list(records, scratch.tile);
-  if (!scratch.brick) scratch.brick.emplace(placing_.has_colors);
+  if (!scratch.brick) scratch.brick.emplace(placing_.least, placing_.has_colors);
   const Vec3i first = morton_decode(records.front().tile) * kTileSide;
   TileVoxels voxels;
   for (std::size_t i = 0; i < kBricks; ++i) {
@@ -227,7 +227,7 @@ void SplatTiles::open_tile() {
   polled_for(kBricks, 1, work_, "splats", [&](std::size_t i) {
     if (tile.lists[i].empty()) return;
     if (open_[i] == nullptr) {
-      open_[i] = std::make_unique<SplatBrick>(placing_.has_colors);
+      open_[i] = std::make_unique<SplatBrick>(placing_.least, placing_.has_colors);
       open_[i]->start(first + morton_decode(i) * SplatBrick::kSide);
     }
     for (const std::uint32_t splat : tile.lists[i]) open_[i]->add(tile.splats[splat]);
