@@ -158,7 +158,7 @@ TEST_F(MaterialChannels, BuildStoresThemAndVerifyComparesThemWithTheMesh) {
   write_text(dir_ / "a.mtl", "newmtl metal\nPm 0.5\nPr 0.2\nKd 1 0.8 0.4\nnewmtl dull\n");
   const ProcessResult check = run_voxdag({"verify", path("a.vdag"), "--mesh", path("a.obj")});
   EXPECT_EQ(check.status, 1) << check.out;
-  EXPECT_NE(check.out.find("channels        failed"), std::string::npos) << check.out;
+  EXPECT_NE(check.out.find("channels        FAILED"), std::string::npos) << check.out;
 }
 
 TEST_F(MaterialChannels, OneChannelMayBeStoredAlone) {
