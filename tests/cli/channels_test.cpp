@@ -112,5 +112,75 @@ TEST_F(Channels, WhatIsWrongIsSaid) {
                  1, "has a format of which no channels are read");
 }
 
+/// A box with a metal and a dull side.
+class MaterialChannels : public Channels {
+ protected:
+  MaterialChannels() {
+    write_text(dir_ / "a.mtl", "newmtl metal\nPm 1\nPr 0.2\nKd 1 0.8 0.4\nnewmtl dull\n");
+    write_text(dir_ / "a.obj",
+               "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\n"
+               "v 0 1 1\nusemtl metal\nf 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\n"
+               "usemtl dull\nf 2 3 7 6\nf 1 4 8 5\n");
+  }
+  ProcessResult build(const std::string& name, std::vector<std::string> more) const {
+    std::vector<std::string> words{"build", path("a.obj"), "-r", "32", "-o", path(name)};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_voxdag(words);
+  }
+  std::string picture(const std::string& name, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"render", path(name), "--size", "64x48", "-o", path("a.png")};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProcessResult result = run_voxdag(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_text(path("a.png"));
+  }
+};
+
+TEST_F(MaterialChannels, BuildStoresThemAndVerifyComparesThemWithTheMesh) {
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--color", "--compact"}, {"--solid"}}) {
+    std::vector<std::string> options{"--channel", "metallic,roughness"};
+    options.insert(options.end(), more.begin(), more.end());
+    ASSERT_EQ(build("a.vdag", options).status, 0);
+    const nlohmann::json list = channels("a.vdag");
+    ASSERT_EQ(list.size(), 2u);
+    EXPECT_EQ(list[0].at("name"), "metallic");
+    EXPECT_EQ(list[0].at("kind"), "u8");
+    EXPECT_EQ(list[0].at("least"), 0);
+    EXPECT_EQ(list[0].at("greatest"), 255);
+    EXPECT_EQ(list[1].at("name"), "roughness");
+    EXPECT_EQ(list[1].at("least"), 51);
+    EXPECT_EQ(list[1].at("greatest"), 255);
+    const ProcessResult check = run_voxdag({"verify", path("a.vdag"), "--mesh", path("a.obj")});
+    EXPECT_EQ(check.status, 0) << check.out;
+    EXPECT_NE(check.out.find("channels        passed"), std::string::npos) << check.out;
+  }
+  write_text(dir_ / "a.mtl", "newmtl metal\nPm 0.5\nPr 0.2\nKd 1 0.8 0.4\nnewmtl dull\n");
+  const ProcessResult check = run_voxdag({"verify", path("a.vdag"), "--mesh", path("a.obj")});
+  EXPECT_EQ(check.status, 1) << check.out;
+  EXPECT_NE(check.out.find("channels        FAILED"), std::string::npos) << check.out;
+}
+
+TEST_F(MaterialChannels, OneChannelMayBeStoredAlone) {
+  ASSERT_EQ(build("a.vdag", {"--channel", "roughness"}).status, 0);
+  const nlohmann::json list = channels("a.vdag");
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].at("name"), "roughness");
+  expect_failure(build("b.vdag", {"--channel", "metallic,gloss"}), 2,
+                 "\"gloss\" is neither metallic nor roughness");
+  expect_failure(build("b.esvo", {"--channel", "metallic"}), 2, "is for DAGs only");
+}
+
+TEST_F(MaterialChannels, PicturesMirrorUnlessReflectionsAreOff) {
+  ASSERT_EQ(build("a.vdag", {"--color", "--channel", "metallic,roughness"}).status, 0);
+  ASSERT_EQ(build("b.vdag", {"--color"}).status, 0);
+  const std::string mirrored = picture("a.vdag"), diffuse = picture("b.vdag");
+  EXPECT_NE(mirrored, diffuse);
+  EXPECT_EQ(picture("a.vdag", {"--no-reflections"}), diffuse);
+  EXPECT_EQ(picture("b.vdag", {"--no-reflections"}), diffuse);
+  EXPECT_EQ(picture("a.vdag", {"--color-by", "metallic"}),
+            picture("a.vdag", {"--color-by", "metallic", "--no-reflections"}));
+}
+
 }  // namespace
 }  // namespace voxdag::cli

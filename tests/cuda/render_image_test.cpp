@@ -9,6 +9,7 @@
 #include "cuda/like_the_cpu.hpp"
 #include "cuda/pictures.hpp"
 #include "support/ball_octree.hpp"
+#include "support/mirror_attributes.hpp"
 #include "support/number_colors.hpp"
 #include "support/test_esvo.hpp"
 #include "voxdag/core/error.hpp"
@@ -84,6 +85,27 @@ TEST_F(CudaRender, LooksUpTheAttributesOfADagAsTheCpuDoes) {
       const RenderedImage image = render_image(scene, picture_grid(), options);
       expect_like(image, expected);
     }
+  }
+}
+
+TEST_F(CudaRender, MirrorsAsTheCpuDoes) {
+  const Svdag dag = picture_scene();
+  const DagAttributes attributes =
+      mirror_attributes(dag.view(), {250, 200, 120}, true, [](std::uint64_t number) {
+        return std::array{static_cast<std::uint8_t>(number % 5 * 60),
+                          static_cast<std::uint8_t>(number % 256)};
+      });
+  const DeviceScene scene(device_, dag.view());
+  const DeviceAttributes device_attributes(scene, attributes.view());
+  for (const Picture& picture : pictures(4)) {
+    SCOPED_TRACE(picture.name);
+    RenderOptions options = picture.options;
+    options.look = ColoredDagView{dag.view(), attributes.view()};
+    const RenderedImage expected = render_image(dag.view(), picture_grid(), options);
+    options.look = device_attributes.view();
+    expect_like(render_image(scene, picture_grid(), options), expected);
+    options.reflections = false;
+    EXPECT_NE(render_image(scene, picture_grid(), options).radiance, expected.radiance);
   }
 }
 

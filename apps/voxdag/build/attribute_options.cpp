@@ -23,6 +23,18 @@ bool parse_cut(const std::string& text) {
   return text == "cut";
 }
 
+/// Takes the channels that --channel names.
+bool add_channels(const std::string& text, AttributeOptions& options) {
+  for (const std::string& name : parse_words(text))
+    if (name == "metallic")
+      options.metallic = true;
+    else if (name == "roughness")
+      options.roughness = true;
+    else
+      throw std::invalid_argument("\"" + name + "\" is neither metallic nor roughness");
+  return true;
+}
+
 IdKind parse_ids(const std::string& text) {
   if (text == "material") return IdKind::kMaterial;
   if (text == "object") return IdKind::kObject;
@@ -65,11 +77,20 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
       .in_group(group);
   command
       .parsed(
+          "--channel", arguments.has_channels,
+          [&options](const std::string& text) { return add_channels(text, options); },
+          "metallic|roughness,...",
+          "Also store these numbers of the materials of glTF and OBJ, filtered from textures as "
+          "colours are, as channels of all cells: 0 to 255. `voxdag render` shows them")
+      .in_group(group);
+  command
+      .parsed(
           "--attribute-resolution", arguments.levels, parse_levels, "M",
-          "Resolution of the finest colours, normals and materials, in cells per side: a power of "
+          "Resolution of the finest colours, normals, materials and channels, in cells per side: a "
+          "power of "
           "two from 4 to the grid's resolution (default: the finest that is expected to fit into "
           "4 GiB and the memory limit)")
-      .only_if(is_wanted, "without --color, --normal and --material-ids")
+      .only_if(is_wanted, "without --color, --normal, --material-ids and --channel")
       .in_group(group);
   command
       .parsed(

@@ -140,7 +140,8 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
        !maker.empty() || arguments.method != BuildMethod::kHashConsed))
     throw UsageError(
         "--work and --parts build the surface's voxels by --method hash: not with --solid, "
-        "--color, --normal, --material-ids, --alpha cut, --compact, several meshes, another method "
+        "--color, --normal, --material-ids, --channel, --alpha cut, --compact, several meshes, "
+        "another method "
         "or an output that is no .vdag file");
   if (arguments.solid) {
     if (arguments.attributes.cut.value_or(false))
@@ -169,6 +170,8 @@ void add_build_command(const Command& program, Session& session) {
       "  voxdag build scan.ply --voxel-size 0.5 -o scan.vdag\n"
       "  voxdag build city.glb -r 16K --bounds 0,0,0,100,100,100 -o block.vdag\n"
       "  voxdag build FlightHelmet.gltf -r 1024 --color --normal -o helmet.vdag\n"
+      "  voxdag build FlightHelmet.gltf -r 1024 --color --normal --channel metallic,roughness -o "
+      "helmet.vdag\n"
       "  voxdag build FlightHelmet.gltf -r 1024 -o helmet.esvo\n"
       "  voxdag build sibenik.obj -r 2048 --displace stone:0.1:4 -o sibenik.esvo\n"
       "  voxdag build chair.obj room.glb -r 1000 --ids file -o scene.vdag\n"
@@ -179,8 +182,8 @@ void add_build_command(const Command& program, Session& session) {
       "the lower corner of the box: with -r, the longest side of the box spans N voxels; with "
       "--voxel-size, it is the smallest grid that holds the box. The build clips the "
       "mesh to the grid. Several meshes, or those of a folder, share one grid.\n\n"
-      "By default a DAG stores the shape only: --color, --normal and --material-ids add "
-      "values of all its cells. If a texture cannot be read, build warns and uses the "
+      "By default a DAG stores the shape only: --color, --normal, --material-ids and --channel "
+      "add values of all its cells. If a texture cannot be read, build warns and uses the "
       "material's colour.");
   command
       .repeated(
@@ -238,7 +241,7 @@ void add_build_command(const Command& program, Session& session) {
   command
       .flag("--compact", arguments->compact,
             "Write the compact form: the geometry takes about a quarter of the bytes; those of "
-            "colours, normals and material ids do not change. Every command reads it")
+            "colours, normals, material ids and channels do not change. Every command reads it")
       .in_group(kDagOptions);
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program and the mesh: 512M, 16GiB. A build that "

@@ -140,7 +140,7 @@ void build_dag_file(BuildArguments arguments, Session& session) {
   std::optional<SurfaceShading> shading;
   if (needs_appearance) {
     std::vector<std::string> warnings;
-    shading.emplace(mesh, source.appearance, &warnings, work);
+    shading.emplace(mesh, source.appearance, &warnings, work, arguments.attributes.has_channels);
     print_warnings(warnings, session);
   }
   if (arguments.attributes.cuts_alpha()) {

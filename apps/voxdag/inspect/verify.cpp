@@ -124,7 +124,9 @@ std::vector<VerifyCheck> attribute_checks(const VerifyArguments& arguments, cons
     else if (source.mesh.triangle_materials.empty())
       return {{"material ids", Result::kFailed, arguments.mesh + " has no materials"}};
   }
-  const SurfaceShading shading(source.mesh, source.appearance, nullptr, &session.progress);
+  const bool has_mirrors = !metallic_roughness_of(attributes.channels).is_empty();
+  const SurfaceShading shading(source.mesh, source.appearance, nullptr, &session.progress,
+                               has_mirrors);
   const AttributeCheck found =
       check_attributes(source.mesh, file.grid(), {file.view(), attributes}, shading,
                        arguments.samples, arguments.seed, &session.progress, ids.view(), cover);
@@ -139,6 +141,9 @@ std::vector<VerifyCheck> attribute_checks(const VerifyArguments& arguments, cons
   if (attributes.has_materials())
     checks.push_back(value_check("material ids", found.materials, 0, kMaterialTolerance,
                                  " of the area", arguments.mesh));
+  if (has_mirrors)
+    checks.push_back(
+        value_check("channels", found.metallic_roughness, 0, kMirrorTolerance, "", arguments.mesh));
   return checks;
 }
 
@@ -220,9 +225,11 @@ std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, const Vdag
     throw Error(session.subject, "", "--displace is for ESVOs only, but this file is a DAG");
   const DagModel file(opened, &session.progress);
   const bool is_cut = file.metadata().build.contains("alpha");
-  const JoinedMeshes meshes = read_meshes_of(
-      arguments, file.metadata(),
-      is_cut || file.attributes().has_colors() || file.attributes().has_normals(), session);
+  const JoinedMeshes meshes =
+      read_meshes_of(arguments, file.metadata(),
+                     is_cut || file.attributes().has_colors() || file.attributes().has_normals() ||
+                         !metallic_roughness_of(file.attributes().channels).is_empty(),
+                     session);
   const MeshWithAppearance& source = meshes.source;
   if (file.metadata().build.contains("solid"))
     return solid_checks(arguments, file, meshes, session);

@@ -187,6 +187,9 @@ void add_light_options(const Command& command, RenderArguments& arguments, Winne
               "Add Phong highlights of the sun and the lights: the mirrored part of the light, 0 "
               "to 1, and how small they are, 1 to 10000 (default: 0:20)")
       .only_if(has_lights, "without sun and lights");
+  command.off_switch("--no-reflections", options.reflections,
+                     "Ignore the channels metallic and roughness (`voxdag build --channel`): all "
+                     "surfaces are diffuse");
   command
       .number("--shadow-samples", options.shadow_samples, NumberRange::whole(1, 4096), "N",
               "Shadow rays per pixel and per light with soft edges")

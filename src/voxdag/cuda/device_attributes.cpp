@@ -29,6 +29,14 @@ DevicePages upload_pages(ValuePagesView& view) {
   return pages;
 }
 
+/// Copies a channel to the device, and makes `view` refer to the copy.
+DeviceBuffer<std::uint64_t> upload_channel(ByteChannelView& view) {
+  if (view.is_empty()) return {};
+  DeviceBuffer<std::uint64_t> words = upload(std::span(view.words, view.word_count), kColorMemory);
+  view.words = words.data();
+  return words;
+}
+
 }  // namespace
 
 struct DeviceAttributes::Memory {
@@ -36,6 +44,7 @@ struct DeviceAttributes::Memory {
   struct Stored {
     DeviceBuffer<std::uint64_t> sums;
     DevicePages colors, normals;
+    DeviceBuffer<std::uint64_t> metallic, roughness;
   };
 
   explicit Memory(const DeviceScene& of) : scene(of) {}
@@ -62,6 +71,10 @@ DeviceAttributes::DeviceAttributes(const DeviceScene& scene, const DagAttributes
   view.attributes.index.words = stored->sums.data();
   stored->colors = upload_pages(view.attributes.colors);
   stored->normals = upload_pages(view.attributes.normals);
+  MetallicRoughnessView& mirrors = view.metallic_roughness;
+  mirrors = metallic_roughness_of(attributes.channels);
+  stored->metallic = upload_channel(mirrors.metallic);
+  stored->roughness = upload_channel(mirrors.roughness);
   memory->stored = stored;
   memory_ = memory;
 }

@@ -78,8 +78,7 @@ void for_each_stretched(const DecodedImage& image, int width, int height,
     return;
   }
   const auto pyramid =
-      make<Texture>(image, {TextureWrap::kClamp, TextureWrap::kClamp}, options,
-                    [&](int x, int y) -> Texture::Texel { return image.pixel(x, y); });
+      make_data_texture(image, {TextureWrap::kClamp, TextureWrap::kClamp}, options);
   for (int y = 0; y < height; ++y) {
     options.call_poll();
     for (int x = 0; x < width; ++x) {
@@ -104,6 +103,12 @@ Texture make_color_texture(const DecodedImage& image, float visible_alpha, Textu
     if (visible_alpha > 0 && static_cast<float>(p[3]) < least) return Texture::Texel{};
     return Texture::Texel{linear[p[0]], linear[p[1]], linear[p[2]], 65535};
   });
+}
+
+Texture make_data_texture(const DecodedImage& image, TextureWraps wraps,
+                          const ImageOptions& options) {
+  return make<Texture>(image, wraps, options,
+                       [&](int x, int y) -> Texture::Texel { return image.pixel(x, y); });
 }
 
 Texture make_normal_texture(const DecodedImage& image, float scale, TextureWraps wraps,

@@ -6,9 +6,9 @@
 namespace voxdag {
 
 /// A texture of 16-bit values. A colour texture holds linear light, premultiplied by alpha, and
-/// alpha. A normal map holds x, y and z: 0 stands for -1 and 65535 for 1, and y points to the
-/// image's upper edge. The vectors of level 0 have unit length; coarser levels hold means, which
-/// are shorter where the vectors differ.
+/// alpha. A data texture holds the image's numbers. A normal map holds x, y and z: 0 stands for -1
+/// and 65535 for 1, and y points to the image's upper edge. The vectors of level 0 have unit
+/// length; coarser levels hold means, which are shorter where the vectors differ.
 using Texture = MipPyramid<4>;
 /// Holds heights from 0 to 65535.
 using HeightTexture = MipPyramid<1>;
@@ -26,6 +26,10 @@ struct TextureWraps {
 /// the fraction of it that is visible.
 Texture make_color_texture(const DecodedImage& image, float visible_alpha, TextureWraps wraps = {},
                            const ImageOptions& options = {});
+
+/// Makes a texture of an image's red, green, blue and alpha as they are.
+Texture make_data_texture(const DecodedImage& image, TextureWraps wraps = {},
+                          const ImageOptions& options = {});
 
 /// Makes a normal map from tangent-space normals, whose x and y are multiplied by `scale`.
 Texture make_normal_texture(const DecodedImage& image, float scale, TextureWraps wraps = {},

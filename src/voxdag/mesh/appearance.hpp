@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "voxdag/core/metallic_roughness.hpp"
 #include "voxdag/core/texture_wrap.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/core/vec2.hpp"
@@ -99,6 +100,9 @@ struct Material {
   TextureUse displacement_map;  ///< Heights from black (0) to white (1).
   float displacement_base = 0;  ///< World units along the normal at height 0.
   float displacement_gain = 1;  ///< World units that height 1 adds.
+  MetallicRoughness metallic_roughness;    ///< Used without a readable map.
+  MetallicRoughness map_factors{1, 1};     ///< Multiply the maps.
+  TextureUse metallic_map, roughness_map;  ///< Linear: blue is metallic, green is roughness.
 };
 
 struct Appearance {

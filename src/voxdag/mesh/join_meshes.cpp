@@ -84,8 +84,9 @@ void append_mesh(MeshWithAppearance& to, MeshWithAppearance from, MemoryBudget* 
     look.materials.resize(mesh.materials.size());
     more_look.materials.resize(more.materials.size());
     for (Material& material : more_look.materials) {
-      for (TextureUse* use : {&material.color_map, &material.emission_map, &material.alpha_map,
-                              &material.normal_map, &material.displacement_map})
+      for (TextureUse* use :
+           {&material.color_map, &material.emission_map, &material.alpha_map, &material.normal_map,
+            &material.displacement_map, &material.metallic_map, &material.roughness_map})
         if (use->exists()) use->image += images;
       look.materials.push_back(std::move(material));
     }

@@ -8,6 +8,7 @@
 #include "voxdag/render/ground.hpp"
 #include "voxdag/render/light_beam.hpp"
 #include "voxdag/render/light_sample.hpp"
+#include "voxdag/render/mirrored_sky.hpp"
 #include "voxdag/render/specular.hpp"
 #include "voxdag/render/tile.hpp"
 #include "voxdag/render/tile_scratch.hpp"
@@ -78,6 +79,35 @@ VOXDAG_HD inline void trace_shadow_rays(const Caster& caster, const RenderSetup&
       });
 }
 
+/// Returns the light of a batch's unoccluded samples that a pixel's surface mirrors, summed, per
+/// unit of the light's colour.
+template <class Scratch>
+VOXDAG_HD inline Vec3f microfacet_shine(const RenderSetup& setup, const LightBatch& batch,
+                                        Vec3f to_viewer, int x, int y, int sample_index, int pixel,
+                                        const Scratch& scratch) {
+  const Light& light = setup.lights[batch.index];
+  const SurfacePoint& point = scratch.points[pixel];
+  const ViewSample& seen = scratch.samples[pixel];
+  const MetallicRoughness numbers = seen.metallic_roughness;
+  const MirroredParts parts = sample_mirror(setup, seen, to_viewer, x, y, sample_index, nullptr);
+  const float alpha = numbers.roughness * numbers.roughness;
+  const FacetView view =
+      facet_view(point.normal, to_viewer,
+                 alpha > MicrofacetRule::kLeastAlpha ? alpha : MicrofacetRule::kLeastAlpha);
+  Vec3f shine;
+  for (int i = 0; i < batch.count; ++i) {
+    if ((scratch.visible[pixel] >> i & 1u) == 0) continue;
+    const LightSample sample =
+        sample_light(setup.tables, light, point, scratch.pixels[pixel], batch.begin + i);
+    if (!(sample.weight > 0)) continue;
+    float fresnel = 0;
+    const float lobe =
+        ggx_lobe(view, normalized(direction_from_surface(light, point, sample)), fresnel);
+    shine = shine + mirror_color(numbers, seen.albedo, parts, fresnel) * (lobe * sample.weight);
+  }
+  return shine;
+}
+
 /// Adds the highlights of a batch's unoccluded samples to scratch.highlights. A light has `samples`
 /// samples per pixel.
 template <class Scratch>
@@ -87,7 +117,17 @@ VOXDAG_HD inline void add_highlights(const RenderSetup& setup, const LightBatch&
   for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
     const SurfacePoint& point = scratch.points[pixel];
     if (!point.is_hit()) continue;
+    const ViewSample& seen = scratch.samples[pixel];
     const Vec3d view = normalized(pixel_direction(setup, tile, pixel));
+    if (!is_dull(seen.metallic_roughness)) {
+      const Vec3f shine =
+          microfacet_shine(setup, batch, -static_cast<Vec3f>(view), tile.x + tile.column(pixel),
+                           tile.y + tile.row(pixel), tile.sample_index, pixel, scratch);
+      scratch.highlights[pixel] =
+          scratch.highlights[pixel] + light.color * shine * (1 / static_cast<float>(samples));
+      continue;
+    }
+    if (!setup.settings.specular.is_on()) continue;
     const Vec3f mirrored = mirrored_view(-static_cast<Vec3f>(view), point.normal);
     float shine = 0;
     for (int i = 0; i < batch.count; ++i) {
@@ -116,7 +156,7 @@ VOXDAG_HD inline int trace_light(const Nodes& nodes, const Caster& caster, const
   for (int done = 0; done < samples; done += kBatch) {
     const LightBatch batch{index, begin + done, samples - done < kBatch ? samples - done : kBatch};
     if (active > 0) trace_shadow_rays(caster, setup, batch, active, scratch);
-    if (setup.settings.specular.is_on()) add_highlights(setup, batch, samples, tile, scratch);
+    if (setup.has_highlights()) add_highlights(setup, batch, samples, tile, scratch);
     for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
       const SurfacePoint& point = scratch.points[pixel];
       if (!point.is_hit()) continue;

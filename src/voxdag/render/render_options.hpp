@@ -82,11 +82,14 @@ struct RenderOptions {
   float cube_pixels = 24;
   bool beams = true;
   Vec3f albedo{0.62f, 0.60f, 0.57f};
-  Specular specular;  ///< Highlights of the sun and the lights.
+  Specular specular;  ///< Highlights of the sun and the lights on surfaces that do not mirror.
   /// Hits at a DAG get the colour and the normal that this view stores for their place: the DAG's
   /// own attributes, or a DAG or an ESVO of the same mesh in a grid with the same corner and side.
   /// Must be in the memory of the device that renders. Empty: hits have `albedo`.
   LookView look;
+  /// Surfaces mirror as the channels `metallic` and `roughness` of the look say, if it has them and
+  /// their kind is u8 (microfacet.hpp). Surfaces without them, or with 0 and 1, are diffuse.
+  bool reflections = true;
   /// Smooths voxels larger than pixels (post_filter.hpp), but not a source's points.
   FilterKind filter = FilterKind::kNone;
   float exposure = 0;  ///< Factor before tone mapping; 0: chosen to suit the picture.

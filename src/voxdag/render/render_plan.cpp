@@ -10,6 +10,7 @@
 #include "voxdag/render/coarse_cells.hpp"
 #include "voxdag/render/exposure.hpp"
 #include "voxdag/render/hatch.hpp"
+#include "voxdag/render/microfacet.hpp"
 #include "voxdag/render/tone_map.hpp"
 
 namespace voxdag {
@@ -59,12 +60,26 @@ int per_view_sample(int per_pixel, int samples_per_pixel) {
 }
 
 /// Returns sample sets for the rays of a pixel: as many for each view sample.
+/// Returns the look with what kernels read of its channels.
+LookView look_of_picture(const RenderOptions& options) {
+  LookView look = options.look;
+  MetallicRoughnessView& numbers = look.dag.metallic_roughness;
+  if (!options.reflections)
+    numbers = {};
+  else if (numbers.is_empty())  // else they lie on the device
+    numbers = metallic_roughness_of(look.dag.attributes.channels);
+  return look;
+}
+
 SampleSets make_samples(const RenderOptions& options) {
   const int view_samples = options.samples_per_pixel;
   const int light_rays = view_samples * per_view_sample(options.shadow_samples, view_samples);
   const int occlusion_rays =
       view_samples * per_view_sample(options.occlusion_samples, view_samples);
-  return {light_rays, std::max(1, occlusion_rays)};
+  const int mirrored_rays = look_of_picture(options).dag.metallic_roughness.is_empty()
+                                ? 1
+                                : view_samples * MicrofacetRule::kSamples;
+  return {light_rays, std::max(mirrored_rays, occlusion_rays)};
 }
 
 /// Returns the mean luminance of the clear sky and the ground.
@@ -201,7 +216,7 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
                                    : interior_sun(voxels, grid, image_.view, aspect);
   setup_.sky = make_sky(setup_.camera, image_.view, options, sun_inside);
   setup_.tables = samples_.view();
-  setup_.look = options.look;
+  setup_.look = look_of_picture(options);
   setup_.section = make_section(grid, options.section);
   if (options.ground && !is_interior && !setup_.section.is_on)
     setup_.ground = make_ground(voxels, grid, image_.view.up);

@@ -84,6 +84,9 @@ struct RenderSetup {
   const float* beam_starts = nullptr;
 
   VOXDAG_HD double side() const { return grid.side(); }
+  /// Returns whether surfaces may have a metallic and a roughness number.
+  VOXDAG_HD bool has_mirrors() const { return !look.dag.metallic_roughness.is_empty(); }
+  VOXDAG_HD bool has_highlights() const { return settings.specular.is_on() || has_mirrors(); }
 };
 
 // Kernels take it by value; their parameters have room for 4 KB.

@@ -13,25 +13,40 @@
 
 namespace voxdag {
 
-/// Returns the sky's light on a surface, divided by pi. `open` is the fraction of light that is not
-/// occluded, 0 to 1.
-VOXDAG_HD inline Vec3f sky_light(const RenderSetup& setup, const ViewSample& sample, Vec3f view,
-                                 float open) {
-  const Vec3f light = sky_ambient(setup.sky, sample.normal);
-  if (setup.settings.occlusion_samples > 0) return light * (SkyShape::kOpen * open);
+/// Returns the part of the sky's light that arrives at a surface. `open` is the fraction of light
+/// that is not occluded, 0 to 1.
+VOXDAG_HD inline float sky_part(const RenderSetup& setup, const ViewSample& sample, Vec3f view,
+                                float open) {
+  if (setup.settings.occlusion_samples > 0) return SkyShape::kOpen * open;
   // Without occlusion, shadows that only the sky lights would look flat. Soft light from the viewer
   // and from the viewer's right shows their shape.
   const float facing = dot(sample.normal, view), aside = dot(sample.normal, setup.sky.fill);
   const float fill =
       SkyShape::kFill + SkyShape::kFillFacing * facing + SkyShape::kFillAside * aside;
-  return light * (fill > 0 ? fill : 0.0f);
+  return fill > 0 ? fill : 0.0f;
 }
 
-/// Shades the tile's view samples and adds them to the picture. `ambient(pixel, open)` returns the
-/// light that comes neither from sun nor lamps, divided by pi.
-template <class Scratch, class Ambient>
+/// Returns the radiance of a surface with a metallic and a roughness number. `ambient` is the light
+/// that comes neither from sun nor lamps, divided by pi, `part` the part of the sky's light that
+/// arrives, `lit` the light of sun and lamps, divided by pi, and `highlights` what they mirror.
+VOXDAG_HD inline Vec3f mirror_radiance(const RenderSetup& setup, const ViewTile& tile, int pixel,
+                                       const ViewSample& sample, Vec3f ambient, float part,
+                                       Vec3f lit, Vec3f highlights) {
+  const Vec3f view = static_cast<Vec3f>(normalized(pixel_direction(setup, tile, pixel)));
+  Vec3f sky;
+  const MirroredParts parts = sample_mirror(setup, sample, -view, tile.x + tile.column(pixel),
+                                            tile.y + tile.row(pixel), tile.sample_index, &sky);
+  return (ambient + lit) * diffuse_albedo(sample.metallic_roughness, sample.albedo, parts) +
+         sky * part + highlights;
+}
+
+/// Shades the tile's view samples and adds them to the picture. `ambient(pixel, part)` returns the
+/// light that comes neither from sun nor lamps, divided by pi, and `part_of(pixel, open)` the part
+/// of the sky's light that arrives.
+template <class Scratch, class Ambient, class Part>
 VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
-                                 const Scratch& scratch, const Ambient& ambient) {
+                                 const Scratch& scratch, const Ambient& ambient,
+                                 const Part& part_of) {
   const RenderSettings& settings = setup.settings;
   const ImageBuffers& image = setup.image;
   const float share = 1.0f / static_cast<float>(settings.samples_per_pixel);
@@ -57,8 +72,15 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
                static_cast<float>(settings.occlusion_samples);
       if (scratch.unhindered_sum[pixel] > 0)
         lit = scratch.lit_sum[pixel] / scratch.unhindered_sum[pixel];
-      radiance = (ambient(pixel, open) + scratch.irradiance[pixel] * kInversePi) * sample.albedo;
-      if (settings.specular.is_on()) radiance = radiance + scratch.highlights[pixel];
+      const float part = part_of(pixel, open);
+      const Vec3f lit_sky = ambient(pixel, part), direct = scratch.irradiance[pixel] * kInversePi;
+      if (setup.has_mirrors() && !is_dull(sample.metallic_roughness)) {
+        radiance = mirror_radiance(setup, tile, pixel, sample, lit_sky, part, direct,
+                                   scratch.highlights[pixel]);
+      } else {
+        radiance = (lit_sky + direct) * sample.albedo;
+        if (settings.specular.is_on()) radiance = radiance + scratch.highlights[pixel];
+      }
     }
     const bool is_first = tile.sample_index == 0;
     const auto add = [&](auto* values, auto value) {
@@ -102,7 +124,7 @@ VOXDAG_HD inline int render_sample(const Nodes& nodes, const Caster& caster,
       scratch.points[pixel] =
           make_surface_point(nodes, setup, sample, pixel_line(setup, tile, pixel));
     scratch.irradiance[pixel] = {};
-    if (setup.settings.specular.is_on()) scratch.highlights[pixel] = {};
+    if (setup.has_highlights()) scratch.highlights[pixel] = {};
     scratch.lit_sum[pixel] = scratch.unhindered_sum[pixel] = 0;
   }
   for (int light = 0; light < setup.light_count; ++light)
@@ -111,16 +133,23 @@ VOXDAG_HD inline int render_sample(const Nodes& nodes, const Caster& caster,
     if (setup.settings.bounces >= 0) {
       rays += trace_paths(nodes, caster, setup, tile, scratch, scratch.paths);
       const float share = 1.0f / static_cast<float>(setup.settings.occlusion_samples);
-      shade_tile(setup, tile, scratch,
-                 [&](int pixel, float /*open*/) { return scratch.paths.gathered[pixel] * share; });
+      shade_tile(
+          setup, tile, scratch,
+          [&](int pixel, float /*part*/) { return scratch.paths.gathered[pixel] * share; },
+          [](int /*pixel*/, float open) { return open; });
       return rays;
     }
   }
   if (setup.settings.occlusion_samples > 0) rays += trace_occlusion(caster, setup, tile, scratch);
-  shade_tile(setup, tile, scratch, [&](int pixel, float open) {
-    const Vec3d direction = normalized(pixel_direction(setup, tile, pixel));
-    return sky_light(setup, scratch.samples[pixel], -static_cast<Vec3f>(direction), open);
-  });
+  shade_tile(
+      setup, tile, scratch,
+      [&](int pixel, float part) {
+        return sky_ambient(setup.sky, scratch.samples[pixel].normal) * part;
+      },
+      [&](int pixel, float open) {
+        const Vec3d direction = normalized(pixel_direction(setup, tile, pixel));
+        return sky_part(setup, scratch.samples[pixel], -static_cast<Vec3f>(direction), open);
+      });
   return rays;
 }
 

@@ -29,7 +29,7 @@ struct Sky {
   SkyMap map;                         ///< If it has texels, replaces zenith, horizon and ground.
 };
 
-/// The numbers of sky_radiance(), sky_ambient() and sky_light().
+/// The numbers of sky_radiance(), sky_ambient() and sky_part().
 struct SkyShape {
   static constexpr float kGlow = 0.10f;   ///< Part of the sun's light in the glow around it.
   static constexpr float kGround = 1.3f;  ///< Factor on the ground's radiance in the picture.

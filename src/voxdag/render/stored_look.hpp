@@ -27,13 +27,15 @@ VOXDAG_HD inline bool is_of_back(Vec3f normal, Vec3f view, Vec3f entered) {
   return facing < 0 && outward < -BackRule::kOpposite;
 }
 
-/// Sets the colour and the normal for shading of a sample at cell `cell` of `level` to those that
-/// `look` stores there, as far as it stores any. The other parameters are those of is_of_back().
+/// Sets the colour, the normal for shading, metallic and roughness of a sample at cell `cell` of
+/// `level` to those that `look` stores there, as far as it stores any. The other parameters are
+/// those of is_of_back().
 VOXDAG_HD inline void set_stored_look(const LookView& look, Vec3i cell, int level, Vec3f view,
                                       Vec3f entered, ViewSample& sample) {
   const StoredLook stored = look_at(look, cell, level);
   if (stored.has_color)
     for (int c = 0; c < 3; ++c) sample.albedo[c] = srgb_to_linear(stored.color[c]);
+  sample.metallic_roughness = stored.metallic_roughness;
   if (!stored.has_normal) return;
   sample.normal = is_of_back(stored.normal, view, entered) ? -stored.normal : stored.normal;
 }

@@ -31,7 +31,7 @@ struct TileScratch {
   float unhindered[kPixels];         ///< Weights of all its samples, summed.
 
   Vec3f irradiance[kPixels];  ///< Irradiance from all lights.
-  Vec3f highlights[kPixels];  ///< Radiance of the highlights of all lights, if there are any.
+  Vec3f highlights[kPixels];  ///< Radiance of the highlights of all lights, if surfaces have any.
   float lit_sum[kPixels],
       unhindered_sum[kPixels];  ///< Luminance from all lights, and without occluders.
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "voxdag/core/metallic_roughness.hpp"
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {
@@ -28,6 +29,7 @@ struct ViewSample {
   Vec3f normal{};  ///< For shading: unit length, towards the viewer; zero where nothing was hit.
   Vec3f face{};    ///< Normal of the face: unit length, towards the viewer.
   Vec3f albedo{};  ///< Linear, in [0,1].
+  MetallicRoughness metallic_roughness;
   float depth = HUGE_VALF;  ///< t along its line; the camera's: world units along its axis.
   float cell_size = 0;      ///< Side of the cell hit, world units: the error of the voxels.
   /// Side of the cells that represent a surface at this depth; rays from here may end at such

@@ -125,5 +125,47 @@ TEST_F(ReadAppearance, GltfPartsThatAreMalformedAreLeftOut) {
   EXPECT_EQ(result.appearance.materials[0].base_color, (Vec3f{1, 0, 0}));
 }
 
+TEST_F(ReadAppearance, GltfMetallicAndRoughnessAreFactorsAndATexture) {
+  const auto result = read("a.gltf", gltf(R"("materials":[{"pbrMetallicRoughness":{
+             "metallicFactor":0.25,"roughnessFactor":0.5,"metallicRoughnessTexture":{"index":1,
+             "texCoord":1,"extensions":{"KHR_texture_transform":{"offset":[0.5,0.25]}}}}},{},
+             {"pbrMetallicRoughness":{"metallicFactor":7,"roughnessFactor":-1}},
+             {"extensions":{"KHR_materials_pbrSpecularGlossiness":{}}}],
+             "textures":[{"source":0},{"source":1,"sampler":0}],"samplers":[{"wrapS":33071}],
+             "images":[{"uri":"c.png"},{"uri":"mr.png"}])"));
+  const std::vector<Material>& m = result.appearance.materials;
+  EXPECT_EQ(m[0].metallic_roughness, (MetallicRoughness{0.25f, 0.5f}));
+  EXPECT_EQ(m[0].map_factors, (MetallicRoughness{0.25f, 0.5f}));
+  EXPECT_EQ(m[0].metallic_map.image, 1);
+  EXPECT_EQ(m[0].metallic_map.wrap_u, TextureWrap::kClamp);
+  EXPECT_EQ(m[0].metallic_map.uv({0, 0}), (Vec2f{0.5f, 0.25f}));
+  EXPECT_EQ(m[0].roughness_map, m[0].metallic_map);
+  EXPECT_EQ(result.appearance.uvs[0], (Vec2f{0, 1}));  // TEXCOORD_1
+  EXPECT_EQ(m[1].metallic_roughness, (MetallicRoughness{1, 1}));
+  EXPECT_FALSE(m[1].metallic_map.exists());
+  EXPECT_EQ(m[2].metallic_roughness, (MetallicRoughness{1, 0}));
+  EXPECT_EQ(m[3].metallic_roughness, (MetallicRoughness{0, 1}));
+}
+
+TEST_F(ReadAppearance, AGltfMetallicRoughnessTextureThatIsMalformedIsReplacedByItsFactors) {
+  for (const auto& [texture, fault] :
+       {std::pair{R"({"index":7})", "textures[7] does not exist"},
+        std::pair{R"({"index":0,"texCoord":1})",
+                  "uses other texture coordinates than the colour texture"}}) {
+    const auto result = read_mesh_with_appearance(
+        write("a.gltf", gltf(R"("materials":[{"pbrMetallicRoughness":{"metallicFactor":0.5,
+             "baseColorTexture":{"index":0},"metallicRoughnessTexture":)" +
+                             std::string(texture) +
+                             R"(}}],"textures":[{"source":0}],"images":[{"uri":"c.png"}])")));
+    ASSERT_EQ(result.warnings.size(), 1u);
+    EXPECT_EQ(result.warnings[0],
+              path("a.gltf") +
+                  ": materials[0].pbrMetallicRoughness.metallicRoughnessTexture: " + fault +
+                  ": the material's metallicFactor and roughnessFactor replace the texture");
+    EXPECT_EQ(result.appearance.materials[0].metallic_roughness, (MetallicRoughness{0.5f, 1}));
+    EXPECT_FALSE(result.appearance.materials[0].metallic_map.exists());
+  }
+}
+
 }  // namespace
 }  // namespace voxdag

@@ -147,6 +147,28 @@ TEST_F(ReadMtl, EmissionIsReadAndItsTextureAloneCountsInFull) {
   EXPECT_EQ(materials[1].emission_map.image, 0);
 }
 
+TEST_F(ReadMtl, PmAndPrAreMetallicAndRoughness) {
+  write("a.mtl",
+        "newmtl m\nPm 0.75\nPr 0.25\nmap_Pr -s 2 2 1 r.png\nnewmtl n\nmap_Pm m.png\n"
+        "newmtl o\nPm 1\nPm x\nPr 2\n");
+  const auto result = read_mesh_with_appearance(write(
+      "a.obj",
+      "mtllib a.mtl\n" + kSquare + "usemtl m\nf 1 2 3\nusemtl n\nf 1 3 4\nusemtl o\nf 1 2 4\n"));
+  ASSERT_EQ(result.warnings.size(), 2u);
+  EXPECT_EQ(result.warnings[0],
+            path("a.mtl") + ": line 9: 'Pm x': not a finite number: the material is no metal");
+  EXPECT_EQ(result.warnings[1],
+            path("a.mtl") + ": line 10: 'Pr 2': outside of 0 to 1: it is clamped");
+  const std::vector<Material>& m = result.appearance.materials;
+  EXPECT_EQ(m[0].metallic_roughness, (MetallicRoughness{0.75f, 0.25f}));
+  EXPECT_TRUE(m[0].roughness_map.exists());
+  EXPECT_FLOAT_EQ(m[0].roughness_map.uv({0.1f, 0}).x, 0.2f);
+  EXPECT_EQ(m[0].map_factors, (MetallicRoughness{1, 1}));
+  EXPECT_EQ(m[1].metallic_roughness, (MetallicRoughness{0, 1}));
+  EXPECT_TRUE(m[1].metallic_map.exists());
+  EXPECT_EQ(m[2].metallic_roughness, (MetallicRoughness{0, 1}));
+}
+
 TEST_F(ReadMtl, OneNumberOfKdIsForAllChannels) {
   write("a.mtl", "newmtl m\nKd 1 # white\nnewmtl n\nKd 0\n");
   const auto result = read("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl n\nf 1 2 3\n");

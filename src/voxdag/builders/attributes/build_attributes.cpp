@@ -8,14 +8,17 @@
 
 #include "voxdag/builders/attributes/filter_materials.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/attributes/encode_channels.hpp"
 
 namespace voxdag {
 namespace {
 
-/// Compresses the values of cells as soon as they come.
+/// Compresses the colours and normals of cells as soon as they come, and keeps the other numbers.
 class AttributeEncoder : public CellValueSink {
  public:
-  AttributeEncoder(std::uint64_t cells, const AttributeOptions& options, MemoryBudget* memory) {
+  AttributeEncoder(std::uint64_t cells, const AttributeOptions& options, MemoryBudget* memory)
+      : metallic(options.metallic ? cells : 0, memory),
+        roughness(options.roughness ? cells : 0, memory) {
     if (options.colors)
       colors = std::make_unique<ValueEncoder>(
           cells, make_value_metric(kColorWeights, 255 * options.color_bound), memory);
@@ -27,6 +30,10 @@ class AttributeEncoder : public CellValueSink {
   bool needs_normals() const override { return normals != nullptr; }
 
   void add(std::uint64_t first, std::span<const VoxelValue> values) override {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!metallic.empty()) metallic[first + i] = values[i].metallic;
+      if (!roughness.empty()) roughness[first + i] = values[i].roughness;
+    }
     while (!values.empty()) {
       const std::uint64_t left_in_page = kPageValues - first % kPageValues;
       const auto part = values.first(std::min<std::size_t>(values.size(), left_in_page));
@@ -43,6 +50,7 @@ class AttributeEncoder : public CellValueSink {
   }
 
   std::unique_ptr<ValueEncoder> colors, normals;
+  CountedVector<std::uint8_t> metallic, roughness;  ///< By number of cell; empty: not wanted.
 
  private:
   /// Packs and adds values of one page.
@@ -66,7 +74,7 @@ DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagVi
   if (options.materials)
     result.materials = filter_materials(mesh, grid, dag, result.index.view(), work, options.ids);
   const MemoryReservation material_bytes(work.memory, result.materials.view().bytes());
-  if (!options.colors && !options.normals) return result;
+  if (!options.colors && !options.normals && !options.metallic && !options.roughness) return result;
   AttributeEncoder encoder(result.index.cells, options, work.memory);
   filter_cells(mesh, grid, dag, result.index.view(), shading, encoder, work);
   const auto finish = [](std::unique_ptr<ValueEncoder>& values, ValuePages& pages,
@@ -79,6 +87,16 @@ DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagVi
   finish(encoder.colors, result.colors, result.color_errors);
   const MemoryReservation color_bytes(work.memory, result.colors.view().bytes());
   finish(encoder.normals, result.normals, result.normal_errors);
+  const MemoryReservation normal_bytes(work.memory, result.normals.view().bytes());
+  std::vector<EncodedChannel> channels;
+  const auto encode = [&](const char* name, CountedVector<std::uint8_t>& values) {
+    if (values.empty()) return;
+    channels.push_back(encode_channel({name, ChannelKind::kU8, 0}, values, work));
+    values = CountedVector<std::uint8_t>(work.memory);
+  };
+  encode("metallic", encoder.metallic);
+  encode("roughness", encoder.roughness);
+  result.channels = join_channels(result.index.cells, channels);
   return result;
 }
 
@@ -93,7 +111,8 @@ std::uint64_t count_cells(const SvdagCounts& counts, int level) {
 int finest_level_within(const SvdagCounts& counts, const AttributeOptions& options,
                         std::uint64_t bytes) {
   const std::uint64_t bits_per_cell =
-      (options.colors ? 8u : 0u) + (options.normals ? 8u : 0u) + (options.materials ? 1u : 0u);
+      (options.colors ? 8u : 0u) + (options.normals ? 8u : 0u) + (options.materials ? 1u : 0u) +
+      (options.metallic ? 16u : 0u) + (options.roughness ? 16u : 0u);
   int level = static_cast<int>(counts.svo_nodes_per_level.size());
   while (level > 0 && (count_cells(counts, level) + 7) / 8 * bits_per_cell > bytes) --level;
   return level;

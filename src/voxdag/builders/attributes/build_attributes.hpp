@@ -1,6 +1,6 @@
 #pragma once
 /// Builds the attributes of a DAG: numbers of its cells, filtered and compressed colours and
-/// normals, and materials.
+/// normals, materials, and the channels `metallic` and `roughness`.
 #include "voxdag/builders/attributes/filter_cells.hpp"
 #include "voxdag/builders/attributes/filter_materials.hpp"
 #include "voxdag/core/parallel/work.hpp"
@@ -10,7 +10,10 @@
 namespace voxdag {
 
 struct AttributeOptions {
-  bool colors = false, normals = false, materials = false;  ///< At least one.
+  bool colors = false, normals = false, materials = false;
+  /// Channels of the kind u8: 255 stands for 1. The shading must have these numbers. With the
+  /// members above, at least one is set.
+  bool metallic = false, roughness = false;
   TriangleIds ids;       ///< Stored instead of materials, if there are some.
   int finest_level = 0;  ///< m: cells of levels 0 to m get attributes.
   /// The largest error of a stored colour, 0 to 1: the square root of the mean of the channels'
@@ -33,7 +36,8 @@ DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagVi
 std::uint64_t count_cells(const SvdagCounts& counts, int level);
 
 /// Returns the finest level whose attributes are expected to fit into `bytes`; 0 if none fits.
-/// Expects 8 bits per cell for colours, 8 for normals and 1 for materials, where they are wanted.
+/// Expects 8 bits per cell for colours, 8 for normals, 1 for materials and 16 for each channel (8
+/// of them during the build alone), where they are wanted.
 int finest_level_within(const SvdagCounts& counts, const AttributeOptions& options,
                         std::uint64_t bytes);
 

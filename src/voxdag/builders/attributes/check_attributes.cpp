@@ -51,7 +51,7 @@ bool has_clear_normal(const SurfaceSum& sum) {
 
 /// The errors of one cell; negative: not compared.
 struct CellErrors {
-  double color = -1, normal = -1, material = -1;
+  double color = -1, normal = -1, material = -1, mirror = -1;
 };
 
 /// Compares cells. Each thread has its own.
@@ -64,6 +64,7 @@ class CellComparer {
                std::span<const std::uint32_t> materials, const SurfaceShading& shading)
       : dag_(colored.dag),
         attributes_(colored.attributes),
+        mirrors_(metallic_roughness_of(colored.attributes.channels)),
         source_(source),
         filter_(cover, index, source, &shading, colored.attributes.has_normals(), nullptr),
         materials_(cover, index, all, materials, nullptr) {}
@@ -74,13 +75,14 @@ class CellComparer {
     std::uint64_t number = 0;
     if (!find_cell_number(dag_, attributes_.index, task.place, task.cell.level, number))
       return errors;
-    if (attributes_.has_colors() || attributes_.has_normals()) {
+    if (attributes_.has_colors() || attributes_.has_normals() || !mirrors_.is_empty()) {
       const SurfaceSum sum = filter_.filter(without_duplicates(task), values_);
       if (sum.area > 0 && attributes_.has_colors())
         errors.color = color_error(read_value(attributes_.colors, number), values_[0].color);
       if (sum.area > 0 && attributes_.has_normals() && has_clear_normal(sum))
         errors.normal = degrees_between(unpack_normal(read_value(attributes_.normals, number)),
                                         values_[0].normal);
+      if (sum.area > 0 && !mirrors_.is_empty()) errors.mirror = mirror_error(number, values_[0]);
     }
     if (attributes_.has_materials()) {
       double stored = 0, largest = 0;
@@ -104,8 +106,20 @@ class CellComparer {
     return task;
   }
 
+  double mirror_error(std::uint64_t number, const VoxelValue& exact) const {
+    int most = 0;
+    const auto compare = [&](const ByteChannelView& channel, int value) {
+      if (!channel.is_empty())
+        most = std::max(most, std::abs(static_cast<int>(channel.read(number)) - value));
+    };
+    compare(mirrors_.metallic, exact.metallic);
+    compare(mirrors_.roughness, exact.roughness);
+    return most / 255.0;
+  }
+
   const SvdagView& dag_;
   const DagAttributesView& attributes_;
+  const MetallicRoughnessView mirrors_;
   const TriangleSource& source_;
   std::vector<std::uint32_t> unique_;
   CellFilter filter_;
@@ -151,6 +165,7 @@ class SampleWalk {
         add(check.colors, errors[i].color, cells[i]);
         add(check.normals, errors[i].normal, cells[i]);
         add(check.materials, errors[i].material, cells[i]);
+        add(check.metallic_roughness, errors[i].mirror, cells[i]);
       }
       cells.clear();
       for (std::vector<VisitedCell>& list : below)

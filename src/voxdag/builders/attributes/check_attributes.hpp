@@ -21,6 +21,8 @@ struct AttributeCheck {
   ValueCheck colors;     ///< Errors as AttributeOptions::color_bound measures them.
   ValueCheck normals;    ///< Errors in degrees.
   ValueCheck materials;  ///< 1 - area of the stored material / largest area of a material.
+  /// Of the channels `metallic` and `roughness` of the kind u8, the larger error; 255 stands for 1.
+  ValueCheck metallic_roughness;
 };
 
 /// Compares random cells of the levels with attributes: at most `samples`, or all cells if there
@@ -29,21 +31,24 @@ struct AttributeCheck {
 /// of the mesh. Leaves out
 ///
 ///   all        cells with more than 65,536 cells in their subtrees
-///   colours    cells without visible surface, whose values come from a cell above
+///   colours, metallic, roughness
+///              cells without visible surface, whose values come from a cell above
 ///   normals    also cells in which the normals disagree so much that rounding may decide
 ///
-/// Rounding changes the channels of a colour by one step of 8 bits, which is an error of 1/255, and
-/// turns a normal by less than 0.1 degrees. Materials with equal areas differ by less than 0.001.
-/// `mesh` must have materials if the DAG has, or `ids` the ids that the DAG stores. `cover` is the
-/// DAG of the mesh if `colored` is that of a solid: then only cells of the surface are compared.
-/// The result does not depend on the number of threads. Throws Cancelled.
+/// Rounding changes the channels of a colour, metallic and roughness by one step of 8 bits, which
+/// is an error of 1/255, and turns a normal by less than 0.1 degrees. Materials with equal areas
+/// differ by less than 0.001. `mesh` must have materials if the DAG has, or `ids` the ids that the
+/// DAG stores. `cover` is the DAG of the mesh if `colored` is that of a solid: then only cells of
+/// the surface are compared. The result does not depend on the number of threads. Throws Cancelled.
 AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const ColoredDagView& colored,
                                 const SurfaceShading& shading, std::uint64_t samples,
                                 std::uint64_t seed, Work work = {}, const TriangleIds& ids = {},
                                 const SvdagView* cover = nullptr);
 
-/// Tolerances for the errors of check_attributes(), to add to the bounds of the encoder.
-inline constexpr double kColorTolerance = 1.5 / 255, kNormalTolerance = 0.1,
-                        kMaterialTolerance = 0.001;
+/// Tolerances for the errors of check_attributes(), to add to the bounds of the encoder. That of
+/// metallic and roughness, which are stored without loss, is for sharp edges in textures: rounding
+/// chooses how many taps a filter takes there (0.032 was seen, at a step from 0 to 1).
+inline constexpr double kColorTolerance = 1.5 / 255, kMirrorTolerance = 0.05,
+                        kNormalTolerance = 0.1, kMaterialTolerance = 0.001;
 
 }  // namespace voxdag

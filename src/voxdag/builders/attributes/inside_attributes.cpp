@@ -10,6 +10,7 @@
 #include "voxdag/core/parallel/ordered_pipeline.hpp"
 #include "voxdag/core/parallel/thread_count.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/attributes/encode_channels.hpp"
 #include "voxdag/stored/attributes/encode_material_ids.hpp"
 #include "voxdag/stored/attributes/numbered_cell.hpp"
 #include "voxdag/stored/attributes/page_reader.hpp"
@@ -37,11 +38,13 @@ struct FilledValues {
 class InsideFiller {
  public:
   InsideFiller(const ColoredDagView& surface, const SvdagView& solid, const CellIndexView& index,
-               const std::optional<Value8>& inside_color, Work work)
+               const std::optional<Value8>& inside_color,
+               std::span<CountedVector<std::int32_t>> channel_codes, Work work)
       : surface_(surface),
         solid_(solid),
         index_(index),
         inside_color_(inside_color),
+        channel_codes_(channel_codes),
         finest_(coarsen(surface.dag, std::max<int>(index.finest_level, kMinLevels), work)),
         finest_bytes_(work.memory, finest_.view().bytes()),
         cells_(CountedAllocator<Filled>(work.memory)) {
@@ -77,6 +80,9 @@ class InsideFiller {
       values.colors.push_back(is_inside && inside_color_ ? *inside_color_ : colors.value(number));
     if (of.has_normals()) values.normals.push_back(normals.value(number));
     if (of.has_materials()) values.materials.push_back(read_material(of.materials, number));
+    for (std::size_t i = 0; i < channel_codes_.size(); ++i)
+      channel_codes_[i][cell.number] =
+          channel_code(of.channels[i].kind, of.channels[i].read(number));
     if (!has_subtree || cell.level == index_.finest_level) return;
     for (std::uint32_t left = children_of(solid_, cell); left != 0; left &= left - 1) {
       const int child = std::countr_zero(left);
@@ -103,6 +109,7 @@ class InsideFiller {
   const SvdagView& solid_;
   const CellIndexView& index_;
   const std::optional<Value8>& inside_color_;
+  std::span<CountedVector<std::int32_t>> channel_codes_;  ///< By channel and number of cell.
   Svdag finest_;  ///< The cells of the surface's finest level, as voxels.
   MemoryReservation finest_bytes_;
   CountedVector<Filled> cells_;
@@ -120,8 +127,11 @@ DagAttributes inside_attributes(const ColoredDagView& surface, const SvdagView& 
   result.index = build_cell_index(solid, surface.attributes.index.finest_level, work.memory);
   const MemoryReservation index_bytes(work.memory, result.index.view().bytes());
   const CellIndexView index = result.index.view();
-  const InsideFiller filler(surface, solid, index, inside_color, work);
   const DagAttributesView& of = surface.attributes;
+  std::vector<CountedVector<std::int32_t>> channel_codes;
+  for (std::size_t i = 0; i < of.channels.count(); ++i)
+    channel_codes.emplace_back(index.cells, work.memory);
+  const InsideFiller filler(surface, solid, index, inside_color, channel_codes, work);
   ValueEncoder colors(of.has_colors() ? index.cells : 0,
                       make_value_metric(kColorWeights, 255 * options.color_bound), work.memory);
   ValueEncoder normals(of.has_normals() ? index.cells : 0,
@@ -146,6 +156,10 @@ DagAttributes inside_attributes(const ColoredDagView& surface, const SvdagView& 
   const MemoryReservation color_bytes(work.memory, result.colors.view().bytes());
   if (of.has_normals()) result.normals = normals.finish(), result.normal_errors = normals.errors();
   if (of.has_materials()) result.materials = materials.finish();
+  std::vector<EncodedChannel> channels;
+  for (std::size_t i = 0; i < channel_codes.size(); ++i)
+    channels.push_back(encode_channel(spec_of(of.channels[i]), channel_codes[i], work));
+  result.channels = join_channels(index.cells, channels);
   return result;
 }
 

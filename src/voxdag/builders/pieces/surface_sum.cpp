@@ -49,6 +49,12 @@ VoxelValue voxel_value(const SurfaceSum& sum) {
   VoxelValue value;
   const float scale = sum.area > 0 ? 1 / sum.area : 0;
   for (int i = 0; i < 3; ++i) value.color[i] = encode(sum.color[i] * scale);
+  const auto byte_of = [&](float total) {
+    const float mean = total * scale;
+    return static_cast<std::uint8_t>(mean > 0 ? std::min(mean, 1.0f) * 255 + 0.5f : 0.0f);
+  };
+  value.metallic = byte_of(sum.metallic);
+  value.roughness = byte_of(sum.roughness);
   const Vec3f normal = sum.direction();
   const float length2 = dot(normal, normal);
   value.normal = length2 > 0 ? normal * (1 / std::sqrt(length2)) : Vec3f{0, 1, 0};
@@ -60,7 +66,7 @@ void add_piece(SurfaceSum& sum, const Cell& cell, const TrianglePiece& piece,
   // A triangle that only touches the cell has a small weight, so that every voxel has a colour. An
   // almost transparent piece has a small weight too, because part of it may pass the alpha test.
   const float area = static_cast<float>(cell.area(piece) + 1e-6) * std::max(sample.coverage, 1e-3f);
-  sum.add(sample.color, sample.normal, area);
+  sum.add(sample.color, sample.normal, area, sample.metallic_roughness);
 }
 
 SurfaceSum sum_pieces(const Cell& cell, const PieceSampler& sampler) {

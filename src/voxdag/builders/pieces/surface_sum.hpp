@@ -22,10 +22,14 @@ struct SurfaceSum {
   float area = 0;        ///< Visible area, in voxels² of the finest level.
   float length = 0;      ///< Lengths of the normals times area.
   OuterProductSum axes;  ///< Outer products of the normals, divided by their lengths, times area.
+  float metallic = 0, roughness = 0;  ///< Times area.
 
   /// Adds surface of one colour and one mean normal, which may be shorter than 1.
-  void add(Vec3f surface_color, Vec3f surface_normal, float surface_area) {
+  void add(Vec3f surface_color, Vec3f surface_normal, float surface_area,
+           MetallicRoughness numbers = {}) {
     color = color + surface_color * surface_area;
+    metallic += numbers.metallic * surface_area;
+    roughness += numbers.roughness * surface_area;
     const Vec3f n = surface_normal * surface_area;
     normal = normal + n;
     area += surface_area;
@@ -40,6 +44,8 @@ struct SurfaceSum {
     area += other.area;
     length += other.length;
     axes.add(other.axes);
+    metallic += other.metallic;
+    roughness += other.roughness;
   }
 
   /// Returns a vector in the direction of the stored normal, by this rule: the sum of the normals,

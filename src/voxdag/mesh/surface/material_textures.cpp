@@ -12,7 +12,7 @@ namespace {
 
 /// The images and settings that a texture is made from. Equal keys share a texture.
 struct TextureKey {
-  enum Kind { kColor, kTangentNormals, kHeights, kEither };
+  enum Kind { kColor, kTangentNormals, kHeights, kEither, kData };
   Kind kind = kColor;
   int image = -1, alpha_image = -1;
   float number = 0;         ///< Colour texture: the least visible alpha. Normals: their scale.
@@ -50,14 +50,21 @@ bool is_invisible(const Texture& texture) { return texture.bounds({0, 0}, {1, 1}
 
 class Loader {
  public:
-  Loader(const Appearance& appearance, bool has_uvs, ImageOptions options)
-      : appearance_(appearance), has_uvs_(has_uvs), options_(std::move(options)) {}
+  Loader(const Appearance& appearance, bool has_uvs, ImageOptions options,
+         bool with_metallic_roughness)
+      : appearance_(appearance),
+        has_uvs_(has_uvs),
+        options_(std::move(options)),
+        with_metallic_roughness_(with_metallic_roughness) {}
 
   std::vector<ResolvedMaterial> load(std::vector<std::string>& warnings, Work work) {
     for (const Material& material : appearance_.materials) {
       request(color_key(material));
       request(emission_key(material));
       request(normal_key(material));
+      if (!with_metallic_roughness_) continue;
+      request(data_key(material.metallic_map));
+      request(data_key(material.roughness_map));
     }
     std::vector<std::pair<const TextureKey, LoadedTexture>*> entries;
     for (auto& entry : textures_) entries.push_back(&entry);
@@ -125,6 +132,10 @@ class Loader {
     return {kind, use.image, -1, material.normal_scale, false, use.wrap_u, use.wrap_v};
   }
 
+  static TextureKey data_key(const TextureUse& use) {
+    return {TextureKey::kData, use.image, -1, 0, false, use.wrap_u, use.wrap_v};
+  }
+
   void request(const TextureKey& key) {
     if (key.image < 0 && key.alpha_image < 0) return;
     if (has_uvs_)
@@ -140,6 +151,8 @@ class Loader {
     try {
       if (key.kind == TextureKey::kColor)
         make_color(key, loaded);
+      else if (key.kind == TextureKey::kData)
+        make_data(key, loaded);
       else
         make_normals(key, loaded);
     } catch (const OverMemory& error) {
@@ -174,6 +187,14 @@ class Loader {
     loaded.texture = std::make_shared<Texture>(
         is_heights ? make_bump_texture(pixels, key.number, wraps, options_)
                    : make_normal_texture(pixels, key.number, wraps, options_));
+  }
+
+  void make_data(const TextureKey& key, LoadedTexture& loaded) const {
+    const DecodedImage pixels =
+        decode(key.image, ": the material's metallic and roughness replace the texture", loaded);
+    if (!pixels.is_empty())
+      loaded.texture =
+          std::make_shared<Texture>(make_data_texture(pixels, {key.wrap_u, key.wrap_v}, options_));
   }
 
   void make_color(const TextureKey& key, LoadedTexture& loaded) const {
@@ -227,12 +248,30 @@ class Loader {
       resolved.normal_texture = found->second.texture;
       resolved.normal_uv = material.normal_map.uv;
     }
+    if (with_metallic_roughness_) resolve_metallic_roughness(material, resolved);
     return resolved;
+  }
+
+  void resolve_metallic_roughness(const Material& material, ResolvedMaterial& resolved) const {
+    resolved.metallic_roughness = material.metallic_roughness;
+    const auto take = [&](const TextureUse& use, std::shared_ptr<const Texture>& texture,
+                          UvTransform& uv, float MetallicRoughness::*number) {
+      const auto found = textures_.find(data_key(use));
+      if (found == textures_.end() || !found->second.texture) return;
+      texture = found->second.texture;
+      uv = use.uv;
+      resolved.metallic_roughness.*number = material.map_factors.*number;
+    };
+    take(material.metallic_map, resolved.metallic_texture, resolved.metallic_uv,
+         &MetallicRoughness::metallic);
+    take(material.roughness_map, resolved.roughness_texture, resolved.roughness_uv,
+         &MetallicRoughness::roughness);
   }
 
   const Appearance& appearance_;
   const bool has_uvs_;
   const ImageOptions options_;
+  const bool with_metallic_roughness_;
   bool has_unused_textures_ = false;
   std::map<TextureKey, LoadedTexture> textures_;
 };
@@ -240,8 +279,10 @@ class Loader {
 }  // namespace
 
 std::vector<ResolvedMaterial> load_materials(const Appearance& appearance, bool has_uvs,
-                                             std::vector<std::string>& warnings, Work work) {
-  return Loader(appearance, has_uvs, image_options(work)).load(warnings, work);
+                                             std::vector<std::string>& warnings, Work work,
+                                             bool with_metallic_roughness) {
+  return Loader(appearance, has_uvs, image_options(work), with_metallic_roughness)
+      .load(warnings, work);
 }
 
 DecodedImage decode_texture_image(const TextureImage& image, const ImageOptions& options) {

@@ -20,6 +20,10 @@ struct ResolvedMaterial {
   UvTransform emission_uv;
   std::shared_ptr<const Texture> normal_texture;
   UvTransform normal_uv;
+  MetallicRoughness metallic_roughness;  ///< Each number multiplies its texture if there is one.
+  /// Blue of the first and green of the second. Both may be one texture.
+  std::shared_ptr<const Texture> metallic_texture, roughness_texture;
+  UvTransform metallic_uv, roughness_uv;
   /// The alpha test of corners: the surface is masked out where the corners' alpha is less, so
   /// everywhere if this exceeds 1.
   float least_corner_alpha = 0;
@@ -28,11 +32,12 @@ struct ResolvedMaterial {
 
 /// Decodes the textures of the materials, each texture once, in parallel. A texture that cannot be
 /// read is left out; a line in `warnings` names the file, the reason and the replacement. If
-/// `has_uvs` is false, there are no texture coordinates and all textures are left out. Throws
-/// Cancelled, and OverMemory with the name of an image that does not fit even when it is decoded
-/// alone.
+/// `has_uvs` is false, there are no texture coordinates and all textures are left out. Without
+/// `with_metallic_roughness`, materials have the default of these numbers. Throws Cancelled, and
+/// OverMemory with the name of an image that does not fit even when it is decoded alone.
 std::vector<ResolvedMaterial> load_materials(const Appearance& appearance, bool has_uvs,
-                                             std::vector<std::string>& warnings, Work work);
+                                             std::vector<std::string>& warnings, Work work,
+                                             bool with_metallic_roughness = false);
 
 /// Decodes an image that a mesh names or contains. Throws Error and OverMemory, and passes
 /// exceptions of options.poll on.

@@ -36,11 +36,12 @@ Texture::Value nearest_visible(const Texture& texture, Vec2f uv) {
 }  // namespace
 
 SurfaceShading::SurfaceShading(const Mesh& mesh, const Appearance& appearance,
-                               std::vector<std::string>* warnings, Work work) {
+                               std::vector<std::string>* warnings, Work work,
+                               bool with_metallic_roughness) {
   std::vector<std::string> ignored_warnings;
-  std::vector<ResolvedMaterial> materials =
-      load_materials(appearance, !appearance.uvs.empty(),
-                     warnings == nullptr ? ignored_warnings : *warnings, work);
+  std::vector<ResolvedMaterial> materials = load_materials(
+      appearance, !appearance.uvs.empty(), warnings == nullptr ? ignored_warnings : *warnings, work,
+      with_metallic_roughness);
   if (materials.empty()) materials.emplace_back();
   const bool has_normal_maps = std::any_of(
       materials.begin(), materials.end(),
@@ -68,13 +69,15 @@ SurfaceSample SurfaceShading::mean(std::uint32_t t, std::span<const Vec2f> polyg
   const bool has_normal_texture = with_normal && material.normal_texture;
   const bool is_plain = has_one_color(t) && !has_normal_texture;
   const Vec3f plain = min(material.color + material.emission, Vec3f{1, 1, 1});
-  if (is_plain && !with_normal) return {plain, 1, {}};
+  const MetallicRoughness numbers = material.metallic_roughness;
+  if (is_plain && !with_normal) return {plain, 1, {}, numbers};
   if (is_plain && has_one_normal(t)) {
     const Vec3f* const n = tables.normals(t);
-    return {plain, 1, n == nullptr ? face_normal(tables.mesh, t) : n[0]};
+    return {plain, 1, n == nullptr ? face_normal(tables.mesh, t) : n[0], numbers};
   }
   const PolygonMoments moments = polygon_moments(polygon);
-  SurfaceSample sample{plain, 1, with_normal ? tables.mean_normal(t, polygon, moments) : Vec3f{}};
+  SurfaceSample sample{plain, 1, with_normal ? tables.mean_normal(t, polygon, moments) : Vec3f{},
+                       numbers};
   if (is_plain) return sample;
   sample.color = material.color;
   if (!tables.appearance.colors.empty())
@@ -100,6 +103,14 @@ SurfaceSample SurfaceShading::mean(std::uint32_t t, std::span<const Vec2f> polyg
     }
     sample.color = min(sample.color + emission, Vec3f{1, 1, 1});
   }
+  if (material.metallic_texture)
+    sample.metallic_roughness.metallic *=
+        material.metallic_texture->mean(region_of(moments, tables.uv(t), material.metallic_uv))[2] *
+        kTexelScale;
+  if (material.roughness_texture)
+    sample.metallic_roughness.roughness *= material.roughness_texture->mean(region_of(
+                                               moments, tables.uv(t), material.roughness_uv))[1] *
+                                           kTexelScale;
   if (!tables.is_visible(t, material, moments.center)) sample.coverage = 0;
   if (has_normal_texture) {
     const CornerTangents corners = tables.tangents[t];
@@ -121,8 +132,9 @@ bool SurfaceShading::has_normal_map(std::uint32_t t) const {
 
 bool SurfaceShading::has_one_color(std::uint32_t t) const {
   const ResolvedMaterial& material = tables_->material(t);
-  return !material.color_texture && !material.emission_texture &&
-         tables_->appearance.colors.empty() && material.least_corner_alpha <= 0;
+  return !material.color_texture && !material.emission_texture && !material.metallic_texture &&
+         !material.roughness_texture && tables_->appearance.colors.empty() &&
+         material.least_corner_alpha <= 0;
 }
 
 bool SurfaceShading::has_one_normal(std::uint32_t t) const {
@@ -199,6 +211,8 @@ std::uint64_t SurfaceShading::bytes() const {
     textures.push_back(material.color_texture.get());
     textures.push_back(material.emission_texture.get());
     textures.push_back(material.normal_texture.get());
+    textures.push_back(material.metallic_texture.get());
+    textures.push_back(material.roughness_texture.get());
   }
   std::sort(textures.begin(), textures.end());
   textures.erase(std::unique(textures.begin(), textures.end()), textures.end());

@@ -23,6 +23,7 @@ struct SurfaceSample {
   float coverage = 1;  ///< Visible part of the area, 0 to 1.
   Vec3f normal;  ///< Mean of the unit normals: shorter where they disagree. Zero for a triangle
                  ///< without area or normals.
+  MetallicRoughness metallic_roughness{};  ///< Mean of the numbers.
 };
 
 /// Refers to mesh and appearance, which must outlive it; owns the decoded textures. Immutable and
@@ -32,10 +33,12 @@ struct SurfaceSample {
 class SurfaceShading {
  public:
   /// Decodes the textures. A texture that cannot be read is left out; a line in `warnings` names it
-  /// and its replacement. Counts the textures and tables in `work` as long as they live. Throws
-  /// Cancelled and OverMemory.
+  /// and its replacement. Counts the textures and tables in `work` as long as they live. Without
+  /// `with_metallic_roughness`, all samples have the default of these numbers. Throws Cancelled and
+  /// OverMemory.
   SurfaceShading(const Mesh& mesh, const Appearance& appearance,
-                 std::vector<std::string>* warnings = nullptr, Work work = {});
+                 std::vector<std::string>* warnings = nullptr, Work work = {},
+                 bool with_metallic_roughness = false);
   ~SurfaceShading();
   SurfaceShading(SurfaceShading&&) noexcept;
 
@@ -46,7 +49,8 @@ class SurfaceShading {
 
   /// Returns whether the triangle's material has a normal map that was read.
   bool has_normal_map(std::uint32_t triangle) const;
-  /// Returns whether the whole triangle is visible and has one colour.
+  /// Returns whether the whole triangle is visible, has one colour and one pair of metallic and
+  /// roughness.
   bool has_one_color(std::uint32_t triangle) const;
   /// Returns whether all normals of the triangle are equal.
   bool has_one_normal(std::uint32_t triangle) const;

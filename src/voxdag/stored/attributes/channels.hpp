@@ -79,7 +79,7 @@ struct ChannelBlock {
   bool is_exact = false;     ///< With a bound: whether the numbers are codes all the same.
 
   /// Bits of the second word: 0 to 31 minimum, 32 to 37 width, 38 is_exact.
-  static ChannelBlock unpack(const std::uint64_t* words) {
+  VOXDAG_HD static ChannelBlock unpack(const std::uint64_t* words) {
     return {words[0], static_cast<std::int32_t>(words[1]), static_cast<int>(words[1] >> 32 & 63),
             (words[1] >> 38 & 1) != 0};
   }

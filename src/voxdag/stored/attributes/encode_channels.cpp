@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -42,10 +43,12 @@ bool quantize(const ChannelView& channel, std::span<const std::int32_t> codes,
 using BlockNumbers = std::array<std::int32_t, kChannelBlockValues>;
 
 /// Sets the numbers that a block of these codes stores. Returns the block, without its begin.
-ChannelBlock describe(const ChannelView& channel, std::span<const std::int32_t> codes,
+template <class Code>
+ChannelBlock describe(const ChannelView& channel, std::span<const Code> codes,
                       BlockNumbers& numbers) {
   ChannelBlock block;
-  block.is_exact = channel.bound > 0 && !quantize(channel, codes, numbers);
+  if constexpr (sizeof(Code) == 4)
+    block.is_exact = channel.bound > 0 && !quantize(channel, codes, numbers);
   if (channel.bound == 0 || block.is_exact) std::copy(codes.begin(), codes.end(), numbers.begin());
   const auto [least, most] = std::minmax_element(
       numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(codes.size()));
@@ -53,6 +56,44 @@ ChannelBlock describe(const ChannelView& channel, std::span<const std::int32_t> 
   block.width = static_cast<int>(
       std::bit_width(static_cast<std::uint32_t>(*most) - static_cast<std::uint32_t>(*least)));
   return block;
+}
+
+template <class Code>
+EncodedChannel encode(const ChannelSpec& spec, std::span<const Code> codes, Work work) {
+  check_channel(spec);
+  EncodedChannel result{spec, {}};
+  ChannelView channel{spec.kind, spec.bound, nullptr, codes.size(), 0, nullptr};
+  const auto codes_of = [&](std::size_t i) {
+    const std::size_t first = i * kChannelBlockValues;
+    return codes.subspan(first, std::min<std::size_t>(kChannelBlockValues, codes.size() - first));
+  };
+  const std::size_t count = channel.block_count();
+  const MemoryReservation block_bytes(work.memory, count * sizeof(ChannelBlock));
+  std::vector<ChannelBlock> blocks(count);
+  polled_for(count, 64, work, "channels", [&](std::size_t i) {
+    BlockNumbers numbers;
+    blocks[i] = describe(channel, codes_of(i), numbers);
+  });
+  std::uint64_t packed_words = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    blocks[i].begin = packed_words;
+    packed_words += ChannelBlock::words_of(codes_of(i).size(), blocks[i].width);
+  }
+  const std::uint64_t words = ChannelBlock::kWords * count + packed_words;
+  const MemoryReservation word_bytes(work.memory, 8 * words);
+  result.words.resize(words);
+  polled_for(count, 64, work, "channels", [&](std::size_t i) {
+    BlockNumbers numbers;
+    describe(channel, codes_of(i), numbers);
+    const ChannelBlock& block = blocks[i];
+    block.pack(result.words.data() + ChannelBlock::kWords * i);
+    std::uint64_t* const packed = result.words.data() + ChannelBlock::kWords * count + block.begin;
+    for (std::size_t k = 0; k < codes_of(i).size(); ++k)
+      write_bits(
+          packed, k * static_cast<std::uint64_t>(block.width), block.width,
+          static_cast<std::uint32_t>(numbers[k]) - static_cast<std::uint32_t>(block.minimum));
+  });
+  return result;
 }
 
 }  // namespace
@@ -107,40 +148,12 @@ void check_channel(const ChannelSpec& spec) {
 
 EncodedChannel encode_channel(const ChannelSpec& spec, std::span<const std::int32_t> codes,
                               Work work) {
-  check_channel(spec);
-  EncodedChannel result{spec, {}};
-  ChannelView channel{spec.kind, spec.bound, nullptr, codes.size(), 0, nullptr};
-  const auto codes_of = [&](std::size_t i) {
-    const std::size_t first = i * kChannelBlockValues;
-    return codes.subspan(first, std::min<std::size_t>(kChannelBlockValues, codes.size() - first));
-  };
-  const std::size_t count = channel.block_count();
-  const MemoryReservation block_bytes(work.memory, count * sizeof(ChannelBlock));
-  std::vector<ChannelBlock> blocks(count);
-  polled_for(count, 64, work, "channels", [&](std::size_t i) {
-    BlockNumbers numbers;
-    blocks[i] = describe(channel, codes_of(i), numbers);
-  });
-  std::uint64_t packed_words = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    blocks[i].begin = packed_words;
-    packed_words += ChannelBlock::words_of(codes_of(i).size(), blocks[i].width);
-  }
-  const std::uint64_t words = ChannelBlock::kWords * count + packed_words;
-  const MemoryReservation word_bytes(work.memory, 8 * words);
-  result.words.resize(words);
-  polled_for(count, 64, work, "channels", [&](std::size_t i) {
-    BlockNumbers numbers;
-    describe(channel, codes_of(i), numbers);
-    const ChannelBlock& block = blocks[i];
-    block.pack(result.words.data() + ChannelBlock::kWords * i);
-    std::uint64_t* const packed = result.words.data() + ChannelBlock::kWords * count + block.begin;
-    for (std::size_t k = 0; k < codes_of(i).size(); ++k)
-      write_bits(
-          packed, k * static_cast<std::uint64_t>(block.width), block.width,
-          static_cast<std::uint32_t>(numbers[k]) - static_cast<std::uint32_t>(block.minimum));
-  });
-  return result;
+  return encode(spec, codes, work);
+}
+EncodedChannel encode_channel(const ChannelSpec& spec, std::span<const std::uint8_t> codes,
+                              Work work) {
+  assert(spec.kind == ChannelKind::kU8);
+  return encode(spec, codes, work);
 }
 
 EncodedChannel copy_channel(const ChannelView& channel) {

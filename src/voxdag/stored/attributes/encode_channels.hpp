@@ -38,6 +38,9 @@ struct EncodedChannel {
 /// OverMemory and Cancelled.
 EncodedChannel encode_channel(const ChannelSpec& spec, std::span<const std::int32_t> codes,
                               Work work = {});
+/// Packs the values of a channel of the kind u8.
+EncodedChannel encode_channel(const ChannelSpec& spec, std::span<const std::uint8_t> codes,
+                              Work work = {});
 
 /// Copies a channel as it is stored.
 EncodedChannel copy_channel(const ChannelView& channel);

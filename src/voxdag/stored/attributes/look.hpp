@@ -29,6 +29,7 @@ struct StoredLook {
   bool has_color = false, has_normal = false;
   Vec3f color{};   ///< sRGB encoded, in [0,1].
   Vec3f normal{};  ///< World space, unit length.
+  MetallicRoughness metallic_roughness;
 };
 
 /// A view for kernels and readers: of an ESVO, of a DAG with attributes, or of nothing (default).
@@ -103,7 +104,8 @@ VOXDAG_HD inline std::uint32_t material_at(const ColoredDagView& colored, Vec3i 
                          : kMaxMaterials;
 }
 
-/// Returns the colour and the normal that a DAG stores for the cell of find_number().
+/// Returns the colour, the normal, and the numbers of ColoredDagView::metallic_roughness that a
+/// DAG stores for the cell of find_number().
 VOXDAG_HD inline StoredLook look_at(const ColoredDagView& colored, Vec3i cell, int level) {
   StoredLook look;
   const DagAttributesView& attributes = colored.attributes;
@@ -128,6 +130,9 @@ VOXDAG_HD inline StoredLook look_at(const ColoredDagView& colored, Vec3i cell, i
     look.normal = unpack_normal(normal.overlay != kStoredValue
                                     ? value_of_overlay(normal.overlay)
                                     : read_value(attributes.normals, normal.number));
+  if (!colored.metallic_roughness.is_empty())
+    if (std::uint64_t number = 0; find_number(colored, cell, level, number))
+      look.metallic_roughness = colored.metallic_roughness.read(number);
   return look;
 }
 

@@ -3,6 +3,7 @@
 #include "voxdag/stored/attributes/cell_index_lookup.hpp"
 #include "voxdag/stored/attributes/channels.hpp"
 #include "voxdag/stored/attributes/material_ids.hpp"
+#include "voxdag/stored/attributes/metallic_roughness_channels.hpp"
 #include "voxdag/stored/attributes/value_overlay.hpp"
 #include "voxdag/stored/attributes/value_pages.hpp"
 
@@ -32,6 +33,8 @@ struct ColoredDagView {
   SvdagView dag;
   DagAttributesView attributes;
   ValueOverlays overlays{};
+  /// Two of the channels, for kernels. Renderers set it; DeviceAttributes refers to its copies.
+  MetallicRoughnessView metallic_roughness{};
 
   VOXDAG_HD bool is_empty() const { return dag.is_empty() || attributes.is_empty(); }
 };

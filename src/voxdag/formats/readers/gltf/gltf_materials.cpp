@@ -30,9 +30,10 @@ ColorValues color_of(const GltfValue& material) {
 }
 
 std::uint64_t uv_set_of_material(const GltfValue& material) {
-  for (const GltfValue& texture : {color_of(material).texture, material["normalTexture"]})
+  for (const GltfValue& texture :
+       {color_of(material).texture, material["normalTexture"], material["emissiveTexture"]})
     if (texture.exists()) return uv_set_of(texture);
-  return uv_set_of(material["emissiveTexture"]);
+  return uv_set_of(material["pbrMetallicRoughness"]["metallicRoughnessTexture"]);
 }
 
 /// Returns the transform T * R * S of the extension KHR_texture_transform.
@@ -84,6 +85,8 @@ class MaterialReader {
     add_memory(bytes);
     appearance_.materials.resize(count);
     read_images();
+    // Triangles without a material have glTF's default material.
+    for (Material& material : appearance_.materials) material.metallic_roughness = {1, 1};
     for (std::size_t i = 0; i < materials.size(); ++i) {
       poll_.step();
       attempt([&] { read_material(materials[i], appearance_.materials[i]); },
@@ -174,6 +177,7 @@ class MaterialReader {
     const GltfValue normal = value["normalTexture"];
     attempt([&] { material.normal_map = use(normal, value); }, "the normal texture is ignored");
     material.normal_scale = static_cast<float>(normal["scale"].number(1));
+    read_metallic_roughness(value, material);
     const std::vector<double> emissive = value["emissiveFactor"].numbers(3);
     const double strength =
         value["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"].number(1);
@@ -184,6 +188,26 @@ class MaterialReader {
               "the material does not emit");
     if (value["emissiveTexture"].exists() && !material.emission_map.exists())
       material.emission = {};
+  }
+
+  /// Materials of KHR_materials_pbrSpecularGlossiness alone have no such values: they are dull.
+  void read_metallic_roughness(const GltfValue& value, Material& material) {
+    const GltfValue pbr = value["pbrMetallicRoughness"];
+    if (!pbr.exists() && value["extensions"]["KHR_materials_pbrSpecularGlossiness"].exists()) {
+      material.metallic_roughness = {};
+      return;
+    }
+    const auto factor = [&](const char* name) {
+      return static_cast<float>(std::clamp(pbr[name].number(1), 0.0, 1.0));
+    };
+    material.metallic_roughness = {factor("metallicFactor"), factor("roughnessFactor")};
+    material.map_factors = material.metallic_roughness;
+    attempt(
+        [&] {
+          material.metallic_map = material.roughness_map =
+              use(pbr["metallicRoughnessTexture"], value);
+        },
+        "the material's metallicFactor and roughnessFactor replace the texture");
   }
 
   TextureUse use(const GltfValue& info, const GltfValue& material) const {

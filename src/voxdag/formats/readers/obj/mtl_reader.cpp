@@ -139,6 +139,18 @@ class MtlReader::Impl {
       if (material.normal_map.exists() && material.normal_kind == NormalMapKind::kTangentSpace)
         return;  // `norm` has one meaning; `bump` may be of either kind.
       set_normal_map(line, NormalMapKind::kEither);
+    } else if (keyword == "pm" || keyword == "pr") {
+      const bool is_metallic = keyword == "pm";
+      float& value = is_metallic ? material.metallic_roughness.metallic
+                                 : material.metallic_roughness.roughness;
+      value = is_metallic ? 0 : 1;
+      attempt(is_metallic ? "the material is no metal" : "the material is dull",
+              [&] { set_fraction(line, value); });
+    } else if (keyword == "map_pm" || keyword == "map_pr") {
+      TextureUse& map = keyword == "map_pm" ? material.metallic_map : material.roughness_map;
+      map = {};
+      attempt("the material's number replaces the texture",
+              [&] { map = use(parse_mtl_map(line)); });
     } else if (keyword == "disp" || keyword == "map_disp") {
       material.displacement_map = {};
       attempt("the surface is not displaced", [&] {
@@ -170,6 +182,13 @@ class MtlReader::Impl {
     float value = 0;
     take_numbers(line, std::span(&value, 1), 1, "not a finite number");
     material_->alpha = std::clamp(is_transparency ? 1 - value : value, 0.0f, 1.0f);
+    if (is_outside(value)) warn(kClamped);
+  }
+
+  void set_fraction(std::string_view line, float& fraction) {
+    float value = 0;
+    take_numbers(line, std::span(&value, 1), 1, "not a finite number");
+    fraction = std::clamp(value, 0.0f, 1.0f);
     if (is_outside(value)) warn(kClamped);
   }
 

@@ -15,12 +15,12 @@ namespace voxdag {
 /// Fills materials from MTL files, by name, and adds the images that they use.
 ///
 /// Reads Kd and Ke (as sRGB), map_Ke, d, Tr where there is no d, map_Kd, map_d, norm, bump
-/// (map_bump) with -bm, disp (map_disp) with -mm, and for each map -s, -o and -clamp; ignores other
-/// statements and options. If there is a map_Kd, it alone gives the colour; Kd replaces it if the
-/// image cannot be read. A map_d, or a map_Kd without d below 1, makes the material a mask; a
-/// map_Kd whose alpha hides everything does not. A Tr that alone would hide the material is taken
-/// for a fault: the material is opaque, with a warning. A malformed statement is a warning that
-/// names its line and its replacement.
+/// (map_bump) with -bm, disp (map_disp) with -mm, Pm, Pr, map_Pm and map_Pr, and for each map -s,
+/// -o and -clamp; ignores other statements and options. If there is a map_Kd, it alone gives the
+/// colour; Kd replaces it if the image cannot be read. A map_d, or a map_Kd without d below 1,
+/// makes the material a mask; a map_Kd whose alpha hides everything does not. A Tr that alone would
+/// hide the material is taken for a fault: the material is opaque, with a warning. A malformed
+/// statement is a warning that names its line and its replacement.
 class MtlReader {
  public:
   /// `appearance` has the materials, with distinct names. The references must stay valid.
