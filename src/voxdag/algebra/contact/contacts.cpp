@@ -69,13 +69,13 @@ double limit_in(const Grid& grid, double most) {
 template <class Cost>
 bool is_touched(const ContactScene& scene, const Cost& cost) {
   if (scene.dag.is_empty()) return false;
-  return LeastCell<CellKind::kVoxels, Ties::kAny, Cost>(scene.dag, cost, 0).is_found();
+  return LeastCell<CellKind::kVoxels, Ties::kAny, Cost>(scene.dag, cost, kNoCost).is_found();
 }
 
 std::optional<NearestVoxel> nearest_to(const SvdagView& dag, const ShapeCore& core, double most) {
   if (core.is_point()) return nearest_voxel(dag, core.from, most * most);
   if (dag.is_empty()) return std::nullopt;
-  const SquaredDistance cost{core};
+  const SquaredDistance cost(core);
   const LeastCell<CellKind::kVoxels, Ties::kFirst, SquaredDistance> found(dag, cost, most * most);
   if (!found.is_found()) return std::nullopt;
   return NearestVoxel{found.first(), found.cost()};
@@ -112,7 +112,7 @@ Vec3d way_out(const SvdagView& dag, Vec3d point, double most) {
       way = {};
       way[axis] = depth;
     }
-  const SquaredPointDistance cost{point};
+  const SquaredPointDistance cost(point);
   const LeastCell<CellKind::kEmpty, Ties::kFirst, SquaredPointDistance> found(
       dag, cost, std::min(least2, most * most));
   return found.is_found() ? -Cube(found.first(), found.side()).to(point) : way;
@@ -135,7 +135,7 @@ void answer_all(std::size_t count, Work work, const Check& check, const Answer& 
 
 bool overlaps(const ContactScene& scene, const Capsule& shape) {
   const GridCapsule capsule(scene.grid, shape);
-  return is_touched(scene, CapsuleTouch{capsule.core, capsule.radius});
+  return is_touched(scene, CapsuleTouch(capsule.core, capsule.radius));
 }
 
 bool overlaps(const ContactScene& scene, const OrientedBox& shape) {
@@ -153,7 +153,7 @@ SweepHit sweep(const ContactScene& scene, const Capsule& shape, Vec3d motion) {
   const double t = found.cost();
   Vec3i voxel = found.first();
   if (t == 0) {
-    const ApproachedDistance distance{capsule.core, capsule.radius, steps};
+    const ApproachedDistance distance(capsule.core, capsule.radius, steps);
     const LeastCell<CellKind::kVoxels, Ties::kFirst, ApproachedDistance> nearest(scene.dag,
                                                                                  distance, kNoCost);
     if (nearest.is_found()) voxel = nearest.first();

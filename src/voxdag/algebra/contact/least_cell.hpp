@@ -4,6 +4,7 @@
 /// Source of the idea: N. Roussopoulos, S. Kelley, F. Vincent, "Nearest Neighbor Queries", 1995. A
 /// walk goes depth first to the child with the least bound, and leaves out those whose bound is not
 /// below the best cost so far.
+#include <bit>
 #include <limits>
 
 #include "voxdag/core/morton.hpp"
@@ -27,10 +28,13 @@ enum class Ties {
 };
 
 /// Finds the cell with the least cost. `Cost` is a type with
-///   bound(first, side, most)   at most the cost of every cell in a cube, in voxels; kNoCost if
-///   that
-///                              is above `most`
-///   exact(first, side, most)   the cost of a cell that is looked for
+///   near(first, side, most, cells, bounds)
+///                                     sets bounds[i] for each child i of a cube of 2 sides: at
+///                                     most the cost of every cell in it. Returns those of the
+///                                     children in the mask `cells` whose bound is at most `most`
+///   bound(first, side, bound, most)   a closer bound of one of them; kNoCost if it is above `most`
+///   exact(first, side, bound, most)   the cost of a cell that is looked for
+///   covers(first, side)               whether the cost of every cell in a cube is 0
 /// Takes a view that has a root of its own (SvdagView::root), which has voxels.
 template <CellKind kKind, Ties kTies, class Cost>
 class LeastCell {
@@ -38,8 +42,7 @@ class LeastCell {
   /// Finds cells of a cost of at most `most`.
   LeastCell(const SvdagView& dag, const Cost& cost, double most)
       : dag_(dag), cost_(cost), least_(most) {
-    if (!is_beaten(cost_.bound(Vec3i{}, std::int32_t{1} << dag.levels, most)))
-      visit(0, dag.root, Vec3i{});
+    visit(0, dag.root, Vec3i{});
   }
 
   bool is_found() const { return side_ != 0; }
@@ -48,12 +51,6 @@ class LeastCell {
   std::int32_t side() const { return side_; }  ///< In voxels.
 
  private:
-  struct Child {
-    double bound;
-    std::uint32_t at;
-    Vec3i first;
-  };
-
   bool is_beaten(double cost) const {
     if (kTies == Ties::kAny && is_found()) return cost >= least_;
     return cost == kNoCost || !(cost <= least_);
@@ -67,34 +64,47 @@ class LeastCell {
     const std::uint32_t mask = above_voxels > 1    ? child_mask(dag_.nodes + at)
                                : above_voxels == 1 ? leaf_block_child_mask(block)
                                                    : at;
-    Child children[8];
-    int count = 0;
-    for (int i = 0; i < 8; ++i) {
-      const bool has_voxels = (mask >> i & 1) != 0;
-      const Vec3i begin = first + child_offset(i) * side;
-      if (kKind == CellKind::kEmpty ? !has_voxels : has_voxels && above_voxels == 0) {
-        offer(begin, side);
-        continue;
+    double bounds[8];
+    std::uint32_t near =
+        cost_.near(first, side, least_, kKind == CellKind::kEmpty ? 0xFFu : mask, bounds);
+    if (kKind == CellKind::kEmpty || above_voxels == 0) {
+      const std::uint32_t sought = kKind == CellKind::kEmpty ? near & ~mask : near;
+      for (std::uint32_t rest = sought; rest != 0; rest &= rest - 1) {
+        const int i = std::countr_zero(rest);
+        offer(first + child_offset(i) * side, side, bounds[i]);
       }
-      if (!has_voxels || above_voxels == 0) continue;
-      const std::uint32_t child = above_voxels > 1
-                                      ? child_pointer(dag_.nodes + at, i)
-                                      : static_cast<std::uint32_t>(block >> 8 * i) & 0xFF;
-      if (kKind == CellKind::kEmpty && is_full(level + 1, child)) continue;
-      const double bound = cost_.bound(begin, side, least_);
-      if (is_beaten(bound)) continue;
-      int place = count++;
-      for (; place > 0 && children[place - 1].bound > bound; --place)
-        children[place] = children[place - 1];
-      children[place] = {bound, child, begin};
+      if (above_voxels == 0) return;
+      near ^= sought;
     }
-    for (int i = 0; i < count && !is_beaten(children[i].bound); ++i)
-      visit(level + 1, children[i].at, children[i].first);
+    const auto child = [&](int i) {
+      return above_voxels > 1 ? child_pointer(dag_.nodes + at, i)
+                              : static_cast<std::uint32_t>(block >> 8 * i) & 0xFF;
+    };
+    for (std::uint32_t rest = near; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      bounds[i] = cost_.bound(first + child_offset(i) * side, side, bounds[i], least_);
+      if (is_beaten(bounds[i]) || (kKind == CellKind::kEmpty && is_full(level + 1, child(i))))
+        near ^= 1u << i;
+    }
+    while (near != 0) {
+      int next = std::countr_zero(near);
+      for (std::uint32_t rest = near & (near - 1); rest != 0; rest &= rest - 1)
+        if (const int i = std::countr_zero(rest); bounds[i] < bounds[next]) next = i;
+      if (is_beaten(bounds[next])) return;
+      const Vec3i begin = first + child_offset(next) * side;
+      if (kKind == CellKind::kVoxels && cost_.covers(begin, side)) return take(begin, side, 0);
+      visit(level + 1, child(next), begin);
+      near ^= 1u << next;
+    }
   }
 
-  void offer(Vec3i first, std::int32_t side) {
-    const double cost = cost_.exact(first, side, least_);
+  void offer(Vec3i first, std::int32_t side, double bound) {
+    const double cost = cost_.exact(first, side, bound, least_);
     if (is_beaten(cost) || (is_found() && cost == least_ && !is_before(first, first_))) return;
+    take(first, side, cost);
+  }
+
+  void take(Vec3i first, std::int32_t side, double cost) {
     least_ = cost;
     first_ = first;
     side_ = side;

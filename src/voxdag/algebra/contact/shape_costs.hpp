@@ -12,32 +12,58 @@ namespace voxdag {
 struct CapsuleTouch {
   ShapeCore core;
   double radius;
+  ShapeBox box;
 
-  double bound(Vec3i first, std::int32_t side, double) const {
-    const Vec3d apart = core.apart({first, side});
-    const double reach = radius + kTouch;
-    return dot(apart, apart) <= reach * reach ? 0 : kNoCost;
+  CapsuleTouch(const ShapeCore& core_in, double radius_in)
+      : core(core_in), radius(radius_in), box(core_in) {}
+
+  double reach2() const { return (radius + kTouch) * (radius + kTouch); }
+  std::uint32_t near(Vec3i first, std::int32_t side, double, std::uint32_t cells,
+                     double* bounds) const {
+    return box.near(first, side, reach2(), cells, bounds);
   }
-  double exact(Vec3i first, std::int32_t side, double most) const {
-    return bound(first, side, most);
+  double bound(Vec3i first, std::int32_t side, double bound, double) const {
+    if (core.is_point()) return bound;
+    const double square2 = core.centre_distance2(first, side),
+                 outer = radius + kTouch + kHalfDiagonal * side;
+    if (square2 <= radius * radius) return bound;
+    if (square2 > outer * outer) return kNoCost;
+    const Vec3d apart = core.apart({first, side});
+    const double square = dot(apart, apart);
+    return square <= reach2() ? square : kNoCost;
+  }
+  double exact(Vec3i first, std::int32_t side, double bound_in, double most) const {
+    return bound(first, side, bound_in, most) == kNoCost ? kNoCost : 0;
+  }
+  /// Returns whether the ball around a cube is in the capsule.
+  bool covers(Vec3i first, std::int32_t side) const {
+    const double rest = radius - kHalfDiagonal * side;
+    return rest >= 0 && core.centre_distance2(first, side) <= rest * rest;
   }
 };
 
 /// The squared distance from a core to cells that the capsule touches, and approaches.
-struct ApproachedDistance {
-  ShapeCore core;
-  double radius;
+struct ApproachedDistance : SquaredDistance {
+  double reach2;
   Vec3d motion;
 
-  double bound(Vec3i first, std::int32_t side, double) const {
-    const Vec3d apart = core.apart({first, side});
-    const double reach = radius + kTouch, square = dot(apart, apart);
-    return square <= reach * reach ? square : kNoCost;
+  ApproachedDistance(const ShapeCore& core_in, double radius, Vec3d motion_in)
+      : SquaredDistance(core_in),
+        reach2((radius + kTouch) * (radius + kTouch)),
+        motion(motion_in) {}
+
+  std::uint32_t near(Vec3i first, std::int32_t side, double most, std::uint32_t cells,
+                     double* bounds) const {
+    return box.near(first, side, std::min(most, reach2), cells, bounds);
   }
-  double exact(Vec3i first, std::int32_t side, double most) const {
+  double bound(Vec3i first, std::int32_t side, double bound_in, double most) const {
+    const double square = SquaredDistance::bound(first, side, bound_in, std::min(most, reach2));
+    return square <= reach2 ? square : kNoCost;
+  }
+  double exact(Vec3i first, std::int32_t side, double bound_in, double most) const {
     const Vec3d apart = core.apart({first, side});
     const bool is_left = dot(apart, apart) > 0 && dot(apart, motion) >= 0;
-    return is_left ? kNoCost : bound(first, side, most);
+    return is_left ? kNoCost : bound(first, side, bound_in, most);
   }
 };
 
@@ -47,27 +73,44 @@ struct ApproachedDistance {
 /// Interference Detection", 1996, section 5.
 class BoxTouch {
  public:
-  explicit BoxTouch(const OrientedBox& box) : box_(box) {
+  explicit BoxTouch(const OrientedBox& box) : box_(box), centre_(box.centre) {
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        reach2_ += box.half[a] * box.half[b] * std::fabs(dot(box.axes[a], box.axes[b]));
+    reach2_ = reach2_ * (1 + 1e-9) + 1;
+    for (const Vec3d& side : box.axes) add(side);
     for (int axis = 0; axis < 3; ++axis) {
       Vec3d unit{};
       unit[axis] = 1;
       add(unit);
-      add(box.axes[axis]);
       for (const Vec3d& side : box.axes) add(cross(unit, side));
     }
   }
 
-  double bound(Vec3i first, std::int32_t side, double) const {
+  std::uint32_t near(Vec3i first, std::int32_t side, double, std::uint32_t cells,
+                     double* bounds) const {
+    return centre_.near(first, side, reach2_, cells, bounds);
+  }
+  double bound(Vec3i first, std::int32_t side, double bound, double) const {
     const double half = 0.5 * side;
     const Vec3d apart = box_.centre - static_cast<Vec3d>(first) - Vec3d{half, half, half};
     for (int i = 0; i < count_; ++i)
       if (std::fabs(dot(apart, directions_[i].along)) >
           half * directions_[i].cube + directions_[i].box)
         return kNoCost;
-    return 0;
+    return bound;
   }
-  double exact(Vec3i first, std::int32_t side, double most) const {
-    return bound(first, side, most);
+  double exact(Vec3i first, std::int32_t side, double bound_in, double most) const {
+    return bound(first, side, bound_in, most) == kNoCost ? kNoCost : 0;
+  }
+  bool covers(Vec3i first, std::int32_t side) const {
+    const double half = 0.5 * side;
+    const Vec3d apart = box_.centre - static_cast<Vec3d>(first) - Vec3d{half, half, half};
+    for (int i = 0; i < 3; ++i)
+      if (!(std::fabs(dot(apart, directions_[i].along)) + half * directions_[i].cube <=
+            box_.half[i]))
+        return false;
+    return true;
   }
 
  private:
@@ -89,6 +132,8 @@ class BoxTouch {
   }
 
   OrientedBox box_;
+  ShapeBox centre_;
+  double reach2_ = 0;  ///< The squared distance from the centre to a corner, or a little more.
   Direction directions_[15];
   int count_ = 0;
 };
@@ -106,44 +151,49 @@ class TouchTime {
     hi_ = max(core.from, end) + reach;
   }
 
-  double bound(Vec3i first, std::int32_t side, double most) const {
-    return time({first, side}, most, false, nullptr);
+  /// The bounds are the times at which the box around the capsule touches the cells.
+  std::uint32_t near(Vec3i first, std::int32_t side, double most, std::uint32_t cells,
+                     double* bounds) const {
+    double begin[3][2], end[3][2];
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = 0; i < 2; ++i) {
+        const double lo = first[axis] + i * side, step = motion_[axis];
+        const double before = lo - hi_[axis], after = lo + side - lo_[axis];
+        const bool is_apart = before > 0 || after < 0;
+        begin[axis][i] = step == 0 ? is_apart ? kNoCost : 0 : (step > 0 ? before : after) / step;
+        end[axis][i] = step == 0 ? kNoCost : (step > 0 ? after : before) / step;
+      }
+    std::uint32_t near = 0;
+    for (int i = 0; i < 8; ++i) {
+      const int x = i & 1, y = i >> 1 & 1, z = i >> 2;
+      bounds[i] = std::max(std::max(begin[0][x], begin[1][y]), std::max(begin[2][z], 0.0));
+      const double until = std::min(std::min(end[0][x], end[1][y]), std::min(end[2][z], most));
+      near |= (bounds[i] <= until && bounds[i] < kNoCost ? 1u : 0u) << i;
+    }
+    return near & cells;
   }
-  double exact(Vec3i first, std::int32_t side, double most) const {
-    return time({first, side}, most, true, nullptr);
+  double bound(Vec3i first, std::int32_t side, double bound, double most) const {
+    return time({first, side}, bound, most, false, nullptr);
   }
+  double exact(Vec3i first, std::int32_t side, double bound, double most) const {
+    return time({first, side}, bound, most, true, nullptr);
+  }
+  bool covers(Vec3i, std::int32_t) const { return false; }
   /// Returns the direction from a voxel to the core when they touch, of unit length; 0 if they are
   /// closer than 1e-6 voxels at the start.
   Vec3d normal(Vec3i voxel) const {
     Vec3d apart{};
-    time({voxel, 1}, kNoCost, true, &apart);
+    time({voxel, 1}, 0, kNoCost, true, &apart);
     return normalized_or(apart, {});
   }
 
   ShapeCore core_at(double t) const { return {core_.from + motion_ * t, core_.along}; }
 
  private:
-  /// Returns when the box around the capsule touches the cube.
-  double box_time(const Cube& cube, double most) const {
-    double begin = 0, end = most;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double before = cube.lo[axis] - hi_[axis], after = cube.hi[axis] - lo_[axis];
-      const double step = motion_[axis];
-      if (step == 0) {
-        if (before > 0 || after < 0) return kNoCost;
-        continue;
-      }
-      begin = std::max(begin, (step > 0 ? before : after) / step);
-      end = std::min(end, (step > 0 ? after : before) / step);
-    }
-    return begin <= end ? begin : kNoCost;
-  }
-
-  /// Returns when the capsule touches a cube, kNoCost if later than `most` or never. `must_near`:
-  /// and if it approaches it then. Sets `apart` to the vector between them at the last time at
-  /// which its direction was certain.
-  double time(const Cube& cube, double most, bool must_near, Vec3d* apart) const {
-    double t = apart == nullptr ? box_time(cube, most) : 0;
+  /// Returns when the capsule touches a cube, at `t` or later, kNoCost if later than `most` or
+  /// never. `must_near`: and if it approaches it then. Sets `apart` to the vector between them at
+  /// the last time at which its direction was certain.
+  double time(const Cube& cube, double t, double most, bool must_near, Vec3d* apart) const {
     while (t <= most) {
       const Vec3d between = core_at(t).apart(cube);
       const double square = dot(between, between), slope = dot(between, motion_);

@@ -17,7 +17,7 @@ std::optional<NearestVoxel> nearest_voxel(const SvdagView& dag, Vec3d point, dou
                       static_cast<std::int32_t>(point.z)};
     if (svdag_contains(dag, voxel, dag.levels)) return NearestVoxel{voxel, 0};
   }
-  const SquaredPointDistance cost{point};
+  const SquaredPointDistance cost(point);
   const LeastCell<CellKind::kVoxels, Ties::kFirst, SquaredPointDistance> found(dag, cost, most2);
   if (!found.is_found()) return std::nullopt;
   return NearestVoxel{found.first(), found.cost()};
