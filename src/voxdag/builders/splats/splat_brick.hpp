@@ -74,11 +74,11 @@ void SplatBrick::each_block(const OnBlock& on_block) const {
         const int x = std::countr_zero(row) & ~3;
         const std::uint64_t four = row >> x & 15;
         row &= ~(15u << x);
-        blocks[morton_encode({x / 4, y / 4, z / 4})] |=
+        blocks[static_cast<std::size_t>(morton_encode({x / 4, y / 4, z / 4}))] |=
             ((four & 3) | (four & 12) << 6) << (leaf_bits(y & 3, 1) | leaf_bits(z & 3, 2));
       }
     }
-  for (std::uint64_t code = 0; code < blocks.size(); ++code)
+  for (std::size_t code = 0; code < blocks.size(); ++code)
     if (blocks[code] != 0) on_block(first_ + morton_decode(code) * 4, blocks[code]);
 }
 

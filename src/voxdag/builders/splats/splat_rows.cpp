@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "voxdag/builders/splats/splat_brick.hpp"
 
@@ -19,39 +20,47 @@ namespace voxdag {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::ScalableTag<double>;
-using DU = hn::RebindToUnsigned<D>;
-using DI = hn::RebindToSigned<D>;  // Sums are below 2^63.
-using V = hn::Vec<D>;
+// Vectors of the compilers: Highway 1.0 has no doubles in WebAssembly.
+constexpr int kLanes = std::max(
+    2, static_cast<int>(hwy::HWY_NAMESPACE::MaxLanes(hwy::HWY_NAMESPACE::ScalableTag<double>())));
+using V = double __attribute__((vector_size(8 * kLanes)));
+using U = std::uint64_t __attribute__((vector_size(8 * kLanes)));
+using I = std::int64_t __attribute__((vector_size(8 * kLanes)));
 constexpr int kSide = SplatBrick::kSide;
 
 /// Returns exp(-squared / 2) for squared from 0 to 9, with a relative error below 4e-10: the
 /// polynomial is that of exp(-squared / 16).
-HWY_ATTR V gaussian(V squared) {
-  const D d;
-  const V t = hn::Mul(squared, hn::Set(d, -0.0625));
-  V p = hn::Set(d, 0.0001555009205924119);
-  for (const double next : {0.0013571251586455074, 0.008321406182960728, 0.041664345801272956,
-                            0.16666645052550583, 0.49999999242658427, 0.9999999999565584, 1.0})
-    p = hn::Add(hn::Mul(p, t), hn::Set(d, next));
-  p = hn::Mul(p, p);
-  p = hn::Mul(p, p);
-  return hn::Mul(p, p);
+HWY_ATTR inline V gaussian(V squared) {
+  const V t = squared * -0.0625;
+  V p = t * 0.0001555009205924119 + 0.0013571251586455074;
+  p = p * t + 0.008321406182960728;
+  p = p * t + 0.041664345801272956;
+  p = p * t + 0.16666645052550583;
+  p = p * t + 0.49999999242658427;
+  p = p * t + 0.9999999999565584;
+  p = p * t + 1;
+  p = p * p;
+  p = p * p;
+  return p * p;
 }
 
-HWY_ATTR V sum_of_products(const V (&a)[3], const V (&b)[3]) {
-  return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
+/// Returns first, first + 1, ...
+HWY_ATTR inline V count_from(double first) {
+  V lanes{};
+  for (int i = 0; i < kLanes; ++i) lanes[i] = i;
+  return first + lanes;
 }
 
-HWY_ATTR std::uint32_t bits_of(hn::Mask<DI> mask) {
-#if HWY_TARGET == HWY_WASM  // Highway 1.0 takes the lanes one by one.
-  return wasm_i64x2_bitmask(mask.raw);
-#else
-  std::uint8_t bytes[8];
-  hn::StoreMaskBits(DI(), mask, bytes);
-  return bytes[0];
-#endif
+/// Rounds numbers from 0 to 2^52 to whole numbers, from the middle to an even one.
+HWY_ATTR inline U whole_of(V value) { return (U)(value + 0x1p52) - (U)(V{} + 0x1p52); }
+
+/// Returns the sums.
+HWY_ATTR inline U add_to(std::uint64_t* at, U value) {
+  U sum;
+  std::memcpy(&sum, at, sizeof sum);
+  sum += value;
+  std::memcpy(at, &sum, sizeof sum);
+  return sum;
 }
 
 /// A splat in a brick.
@@ -62,69 +71,45 @@ class RowAdder {
       lo_[axis] = std::max(splat.box.lo[axis] - rows.first[axis], 0);
       hi_[axis] = std::min(splat.box.hi[axis] - rows.first[axis], kSide);
     }
+    for (const Vec3d& row : splat.rows) a_ += row.x * row.x;
   }
 
   HWY_ATTR void add() const {
-    const D d;
-    V mx[3];
-    for (std::size_t k = 0; k < 3; ++k) mx[k] = hn::Set(d, splat_.rows[k].x);
-    const V a = sum_of_products(mx, mx);
-    const int lanes = static_cast<int>(hn::Lanes(d));
     for (int z = lo_.z; z < hi_.z; ++z)
-      for (int y = lo_.y; y < hi_.y; y += lanes) add_rows(mx, a, y, z);
+      for (int y = lo_.y; y < hi_.y; y += kLanes) add_rows(y, z);
   }
 
  private:
-  /// The first and the last place of a row that the splat may reach.
-  struct Spans {
-    HWY_ALIGN double from[hn::MaxLanes(D())], to[hn::MaxLanes(D())];
-  };
-
   /// Adds to the rows from y on, one for each lane.
-  HWY_ATTR void add_rows(const V (&mx)[3], V a, int y, int z) const {
-    const int count = std::min(static_cast<int>(hn::Lanes(D())), hi_.y - y);
-    const D d;
-    const V dy =
-        hn::Sub(hn::Iota(d, static_cast<double>(rows_.first.y + y)), hn::Set(d, splat_.center.y));
+  HWY_ATTR void add_rows(int y, int z) const {
+    const V dy = count_from(rows_.first.y + y) - splat_.center.y;
     const double dz = (rows_.first.z + z) - splat_.center.z;
-    double mz[3];
-    V my[3], across[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      mz[k] = splat_.rows[k].z * dz;
-      my[k] = hn::Mul(hn::Set(d, splat_.rows[k].y), dy);
-      across[k] = hn::Add(my[k], hn::Set(d, mz[k]));
-    }
     // A little more than the reach: the loop over the voxels decides.
     constexpr double kLimit = kSplatReach * kSplatReach + 0.01;
-    const V b = sum_of_products(mx, across);
-    const V c = hn::Sub(sum_of_products(across, across), hn::Set(d, kLimit));
-    const V discriminant = hn::Sub(hn::Mul(b, b), hn::Mul(a, c));
-    const auto reaches = hn::Ge(discriminant, hn::Zero(d));
-    if (hn::AllFalse(d, reaches)) return;
-    const V root = hn::Sqrt(hn::Max(discriminant, hn::Zero(d))),
-            inverse = hn::Div(hn::Set(d, 1.0), a), half = hn::Mul(root, inverse),
-            middle = hn::NegMulAdd(b, inverse, hn::Set(d, splat_.center.x - rows_.first.x));
-    Spans spans;
-    hn::Store(hn::Ceil(hn::Sub(middle, half)), d, spans.from);
-    hn::Store(hn::IfThenElse(reaches, hn::Floor(hn::Add(middle, half)), hn::Set(d, -1.0)), d,
-              spans.to);
-    HWY_ALIGN double all_my[3][hn::MaxLanes(D())];
-    for (std::size_t k = 0; k < 3; ++k) hn::Store(my[k], d, all_my[k]);
-    for (int i = 0; i < count; ++i) {
-      if (!(spans.from[i] < hi_.x && spans.to[i] >= lo_.x)) continue;
-      const double row_my[3] = {all_my[0][i], all_my[1][i], all_my[2][i]};
-      add_row(mx, row_my, mz, y + i, z, static_cast<int>(std::max<double>(spans.from[i], lo_.x)),
-              static_cast<int>(std::min<double>(spans.to[i], hi_.x - 1)) + 1);
+    V my[3], b{}, c = V{} - kLimit;
+    double mz[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      mz[k] = splat_.rows[k].z * dz;
+      my[k] = splat_.rows[k].y * dy;
+      const V across = my[k] + mz[k];
+      b += splat_.rows[k].x * across;
+      c += across * across;
+    }
+    const V discriminant = b * b - a_ * c;
+    const double inverse = 1 / a_, middle = splat_.center.x - rows_.first.x;
+    for (int i = 0; i < std::min(kLanes, hi_.y - y); ++i) {
+      if (!(discriminant[i] >= 0)) continue;
+      const double half = std::sqrt(discriminant[i]) * inverse, at = middle - b[i] * inverse;
+      const double from = std::ceil(at - half), to = std::floor(at + half);
+      if (!(from < hi_.x && to >= lo_.x)) continue;
+      add_row({my[0][i], my[1][i], my[2][i]}, {mz[0], mz[1], mz[2]}, y + i, z,
+              static_cast<int>(std::max<double>(from, lo_.x)),
+              static_cast<int>(std::min<double>(to, hi_.x - 1)) + 1);
     }
   }
 
   /// Adds to the voxels [begin, end) of a row. Lanes beyond `end` add nothing.
-  HWY_ATTR void add_row(const V (&mx)[3], const double (&my)[3], const double (&mz)[3], int y,
-                        int z, int begin, int end) const {
-    const D d;
-    const DU du;
-    const DI di;
-    const auto below = static_cast<std::int64_t>(rows_.least) - 1;
+  HWY_ATTR void add_row(Vec3d my, Vec3d mz, int y, int z, int begin, int end) const {
     const std::size_t row = static_cast<std::size_t>(z * kSide + y) * kSide;
     std::uint64_t* const sums = rows_.sums + row;
     std::uint64_t* const weights = rows_.colors == nullptr ? nullptr : rows_.colors + 4 * row;
@@ -141,46 +126,35 @@ class RowAdder {
       begin = std::countr_zero(left);
       end = kSide - std::countl_zero(left);
     }
-    const V limit = hn::Set(d, kSplatReach * kSplatReach),
-            extinction = hn::Set(d, splat_.extinction),
-            past = hn::Set(d, static_cast<double>(rows_.first.x + end)),
-            center_x = hn::Set(d, splat_.center.x), one = hn::Set(d, 0x1p52);
-    const V my0 = hn::Set(d, my[0]), my1 = hn::Set(d, my[1]), my2 = hn::Set(d, my[2]);
-    const V mz0 = hn::Set(d, mz[0]), mz1 = hn::Set(d, mz[1]), mz2 = hn::Set(d, mz[2]);
-    for (int x = begin; x < end; x += static_cast<int>(hn::Lanes(d))) {
-      const V place = hn::Iota(d, static_cast<double>(rows_.first.x + x));
-      const V dx = hn::Sub(place, center_x);
-      const V u[3] = {hn::Add(hn::Add(hn::Mul(mx[0], dx), my0), mz0),
-                      hn::Add(hn::Add(hn::Mul(mx[1], dx), my1), mz1),
-                      hn::Add(hn::Add(hn::Mul(mx[2], dx), my2), mz2)};
-      const V squared = sum_of_products(u, u);
-      const auto is_reached = hn::And(hn::Le(squared, limit), hn::Lt(place, past));
-      const V term = hn::IfThenElseZero(is_reached, hn::Mul(extinction, gaussian(squared)));
-      // Below 2^52, this rounds to the nearest whole number, to an even one in the middle.
-      const auto whole = hn::Sub(hn::BitCast(du, hn::Add(term, one)), hn::BitCast(du, one));
-      const auto sum = hn::Add(hn::LoadU(du, sums + x), whole);
-      hn::StoreU(sum, du, sums + x);
-      set |= bits_of(hn::Gt(hn::BitCast(di, sum), hn::Set(di, below))) << x;
+    const double past = rows_.first.x + end;
+    const Vec3d mx{splat_.rows[0].x, splat_.rows[1].x, splat_.rows[2].x};
+    U bit{}, found{};
+    for (int i = 0; i < kLanes; ++i) bit[i] = std::uint64_t{1} << i;
+    for (int x = begin; x < end; x += kLanes) {
+      const V place = count_from(rows_.first.x + x), dx = place - splat_.center.x;
+      const V u0 = (mx.x * dx + my.x) + mz.x, u1 = (mx.y * dx + my.y) + mz.y,
+              u2 = (mx.z * dx + my.z) + mz.z;
+      const V squared = (u0 * u0 + u1 * u1) + u2 * u2;
+      const I reached = (squared <= kSplatReach * kSplatReach) & (place < past);
+      const U whole = whole_of(splat_.extinction * gaussian(squared)) & (U)reached;
+      const U sum = add_to(sums + x, whole);
+      found |= (U)(sum >= rows_.least) & (bit << x);
       if (weights == nullptr) continue;
-      const auto weight = hn::ShiftRight<12>(hn::Add(whole, hn::Set(du, 4095)));
-      const auto add = [&](int channel, auto value) HWY_ATTR {
-        std::uint64_t* const at = weights + channel * kSide + x;
-        hn::StoreU(hn::Add(hn::LoadU(du, at), value), du, at);
-      };
-      add(0, weight);
+      const U weight = (whole + 4095) >> 12;
+      add_to(weights + x, weight);
       // Products are whole numbers below 2^52, which doubles hold.
-      const V factor = hn::Sub(hn::BitCast(d, hn::Add(weight, hn::BitCast(du, one))), one);
-      for (std::size_t i = 0; i < 3; ++i) {
-        const V product = hn::Mul(factor, hn::Set(d, static_cast<double>(splat_.color[i])));
-        add(static_cast<int>(i) + 1,
-            hn::Sub(hn::BitCast(du, hn::Add(product, one)), hn::BitCast(du, one)));
-      }
+      const V factor = (V)(weight + (U)(V{} + 0x1p52)) - 0x1p52;
+      for (int i = 0; i < 3; ++i)
+        add_to(weights + (i + 1) * kSide + x,
+               whole_of(factor * static_cast<double>(splat_.color[static_cast<std::size_t>(i)])));
     }
+    for (int i = 0; i < kLanes; ++i) set |= static_cast<std::uint32_t>(found[i]);
   }
 
   const SplatRows& rows_;
   const GridSplat& splat_;
   Vec3i lo_{}, hi_{};  ///< The voxels of the brick in the splat's box.
+  double a_ = 0;       ///< Of d² = a x² + ... along a row.
 };
 
 }  // namespace
