@@ -2,6 +2,7 @@
  * The levels of a scene that have arrived, in memory: for rays on the CPU, and to fill textures
  * again after the graphics card has lost them.
  */
+import { channelValue, rangeOf } from './channels.js';
 import { cellNumber, countMaterials, materialOf, overlayAt, withPlaces } from './materials.js';
 
 /** @typedef {import('./file/scene_loader.js').FileInfo} FileInfo */
@@ -28,6 +29,8 @@ export class SceneMemory {
     this.mostInstances = 1;
     /** @type {import('./file/scene_loader.js').Attributes | null} */
     this.attributes = null;
+    /** The channel that arrived last. @type {import('./channels.js').Channel | null} */
+    this.channel = null;
     /** @type {import('./materials.js').CellIndex | null} */
     this.cells = null;
   }
@@ -45,6 +48,12 @@ export class SceneMemory {
     const number = cellNumber(this.dag(), cells, voxel, level);
     const given = overlayAt(this.overlay, this.version.materials, voxel, level, this.info.levels, number < 0);
     return given ?? (number < 0 ? null : materialOf(attributes.materials, number));
+  }
+
+  /** Returns the value of the channel of a cell; null without a channel, and of cells that edits added. @param {import('./math.js').Vec3} voxel  One in the cell. @param {number} level @returns {number | null} */
+  channelValue(voxel, level) {
+    const { cells, channel } = this, number = cells && channel ? cellNumber(this.dag(), cells, voxel, level) : -1;
+    return channel === null || number < 0 ? null : channelValue(channel, number);
   }
 
   /** Returns how many cells each material has; null before all have arrived, and if there are very many. */
@@ -72,6 +81,13 @@ export class SceneMemory {
       this.cells = withPlaces(message.index, this.info.levelBegin);
       textures?.setLook(message);
       return;
+    } else if (message.type === 'channel') {
+      const found = this.info.channels.find(({ name }) => name === message.name);
+      if (found === undefined) return;
+      const channel = { ...found, words: message.words };
+      this.channel = { ...channel, range: rangeOf(channel) };
+      textures?.setChannel(this.channel);
+      return;
     } else {
       return;
     }
@@ -90,6 +106,7 @@ export class SceneMemory {
     textures.nodes.set(0, this.nodes);
     textures.leaves.set(0, this.leaves);
     if (this.attributes !== null) textures.setLook(this.attributes);
+    if (this.channel !== null) textures.setChannel(this.channel);
     if (this.overlay.length > 0) textures.setOverlay(this.overlay);
   }
 }

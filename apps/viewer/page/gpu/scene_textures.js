@@ -1,5 +1,6 @@
 /** The scene in textures of the graphics card. */
-import { DAG } from '../constants.js';
+import { channelUniforms } from '../channels.js';
+import { CHANNELS, DAG } from '../constants.js';
 import { idBits } from '../materials.js';
 import { LongTexture, mostTexels } from './long_texture.js';
 
@@ -35,6 +36,8 @@ export class SceneTextures {
     /** @type {{index: Attributes['index'], colorBits: number, normalBits: number, slots: LongTexture, values: (LongTexture | null)[],
      *   materials: {count: number, words: LongTexture, pages: LongTexture} | null} | null} */
     this.look = null;
+    /** @type {{of: import('../channels.js').Channel, words: LongTexture} | null} */
+    this.channel = null;
   }
 
   /** @param {Attributes} attributes */
@@ -50,6 +53,19 @@ export class SceneTextures {
       values: [colors, normals].flatMap((v) => (v === null ? [null, null] : [upload(v.words), upload(v.begins)])),
       materials: materials && { count: materials.materials, words: upload(materials.words), pages: upload(materials.begins) },
     };
+  }
+
+  /** Uploads a channel in place of another. @param {import('../channels.js').Channel} channel */
+  setChannel(channel) {
+    if (this.channel !== null) this.gl.deleteTexture(this.channel.words.texture);
+    const words = new LongTexture(this.gl, 'R32UI', channel.words.length + 1);
+    words.set(0, channel.words);
+    this.channel = { of: channel, words };
+  }
+
+  /** Returns the channel that settings show, once it is here. @param {Partial<Pick<import('../settings.js').Settings, 'channel'>>} wanted */
+  shownChannel({ channel }) {
+    return this.look !== null && channel !== undefined && this.channel?.of.name === channel.name ? this.channel : null;
   }
 
   /** Uploads the words of values that edits gave to cells. @param {Uint32Array} words */
@@ -83,7 +99,7 @@ export class SceneTextures {
 
   /**
    * Sets the uniforms of look.glsl and returns its textures.
-   * @param {import('./gl_tools.js').Program} program @param {{colors: boolean, normals: boolean}} wanted
+   * @param {import('./gl_tools.js').Program} program @param {Pick<import('../settings.js').Settings, 'colors' | 'normals'> & Partial<import('../settings.js').Settings>} wanted
    * @returns {{[name: string]: WebGLTexture}}
    */
   lookTextures(program, wanted) {
@@ -102,9 +118,15 @@ export class SceneTextures {
     gl.uniform1uiv(program.place('u_slot_begin'), begin);
     gl.uniform1uiv(program.place('u_level_begin'), levelBegin);
     program.ints({ u_finest: look.index.finest, u_color_bits: wanted.colors ? look.colorBits : -1, u_normal_bits: wanted.normals ? look.normalBits : -1 });
+    const channel = this.shownChannel(wanted), shown = channel && channelUniforms(channel.of, wanted.channel?.range ?? null);
+    program.ints(shown?.ints ?? { u_channel: -1 });
+    if (channel !== null && shown !== null) {
+      program.floats(shown.floats);
+      program.uints({ u_channel_packed: 4 * Math.ceil(channel.of.values / CHANNELS.blockValues) });
+    }
     const [colorWords, colorPages, normalWords, normalPages] = look.values.map((v) => (v ?? look.slots).texture);
     const u_overlay = (this.overlay ?? look.slots).texture;
-    return { u_overlay, u_slots: look.slots.texture, u_color_words: colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages };
+    return { u_overlay, u_slots: look.slots.texture, u_color_words: channel?.words.texture ?? colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages };
   }
 
   /**
@@ -132,7 +154,7 @@ export class SceneTextures {
   hidden = null;
 
   #all() {
-    return [this.hidden, this.overlay, this.look?.materials?.words ?? null, this.look?.materials?.pages ?? null, this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
+    return [this.hidden, this.channel?.words ?? null, this.overlay, this.look?.materials?.words ?? null, this.look?.materials?.pages ?? null, this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
   }
   bytes() {
     return this.#all().reduce((sum, texture) => sum + (texture?.bytes ?? 0), 0);

@@ -123,16 +123,61 @@ export function toggle({ label, get, set, hint }) {
 /**
  * Makes a list that opens, to choose one of several.
  * @template {string} T
- * @param {{label: string, options: [T, string][], get: (settings: Settings) => T, set: (value: T) => void}} options
+ * @param {{label: string, options: [T, string][] | (() => [T, string][]), get: (settings: Settings) => T, set: (value: T) => void}} options
  * @returns {Control}
  */
 export function choice({ label, options, get, set }) {
-  const id = newId();
-  const select = h('select', { id, on: { change: () => set(/** @type {T} */ (select.value)) } },
-    ...options.map(([value, name]) => h('option', { value }, name)));
+  const id = newId(), select = h('select', { id, on: { change: () => set(/** @type {T} */ (select.value)) } });
+  let listed = '';
+  const list = () => {
+    const now = typeof options === 'function' ? options() : options, text = JSON.stringify(now);
+    if (text !== listed) select.replaceChildren(...now.map(([value, name]) => h('option', { value }, name)));
+    listed = text;
+  };
+  list();
   return {
     element: h('div', { class: 'row choice' }, h('label', { for: id }, label), select),
-    refresh(settings) { select.value = get(settings); },
+    refresh(settings) {
+      list();
+      select.value = get(settings);
+    },
+  };
+}
+
+/**
+ * Makes fields for the two ends of a range. A field that is emptied gives null.
+ * @param {{label: string, get: () => [number, number] | null, set: (range: [number | null, number | null]) => void, text: (value: number) => string}} options
+ * @returns {Control}
+ */
+export function rangeFields({ label, get, set, text }) {
+  const fields = ['least', 'greatest'].map((end, i) => {
+    const take = () => {
+      const now = get(), typed = field.value.trim(), value = typed === '' ? null : typedNumber(typed, new Map());
+      // A number that was not changed stays as it is, in full.
+      if (now !== null && typed !== text(now[i]) && (typed === '' || value !== null)) set(i === 0 ? [value, now[1]] : [now[0], value]);
+      refresh();
+    };
+    const field = h('input', {
+      type: 'text', class: 'number', inputmode: 'decimal', 'aria-label': `${label}, ${end}`, autocomplete: 'off', on: {
+        focus: () => field.select(), blur: take,
+        keydown: (event) => {
+          if (event.key === 'Escape') {
+            event.stopPropagation();
+            refresh();
+          }
+          if (event.key === 'Enter' || event.key === 'Escape') field.blur();
+        },
+      },
+    });
+    return field;
+  });
+  const refresh = () => {
+    const now = get();
+    fields.forEach((field, i) => { if (now !== null) field.value = text(now[i]); });
+  };
+  return {
+    element: h('div', { class: 'row range', role: 'group', 'aria-label': label }, h('span', {}, label), h('span', {}, fields[0], ' – ', fields[1])),
+    refresh() { if (!fields.some((field) => field === document.activeElement)) refresh(); },
   };
 }
 

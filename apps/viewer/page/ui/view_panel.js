@@ -1,9 +1,10 @@
 /** The panel "View": how one moves, what is shown and how finely. */
 import { addScaled, cross, length, sub } from '../math.js';
 import { compassOf } from '../hands/pose.js';
-import { button, choice, group, refreshAll, segments, slider, toggle } from './controls.js';
+import { button, choice, group, rangeFields, refreshAll, segments, slider, toggle } from './controls.js';
 import { shownCubes } from '../settings.js';
 import { h } from './dom.js';
+import { valueText } from './numbers.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui
@@ -61,6 +62,19 @@ export function viewPanel(ui) {
     text: (value) => (value >= levels() ? 'all' : `${value} (${(2 ** value).toLocaleString('en')}³)`),
   });
   const colors = toggle({ label: 'Colours', get: (s) => s.colors, set: (on) => viewer.set({ colors: on }, 'ui') });
+  const channel = choice({
+    label: 'Colour by', get: (s) => s.channel.name ?? '',
+    options: () => [['', viewer.info?.hasColors ? 'colours of the file' : 'nothing'], ...(viewer.info?.channels ?? []).map(({ name }) => /** @type {[string, string]} */ ([name, name]))],
+    set: (name) => viewer.set({ channel: { name: name || null, range: null }, ...(name && { show: 'light' }) }, 'ui'),
+  });
+  const range = rangeFields({
+    label: 'Range', text: valueText, get: () => viewer.channel()?.range ?? null,
+    set: ([least, most]) => {
+      const values = viewer.channel()?.values ?? [0, 1], [low, high] = [least ?? values[0], most ?? values[1]];
+      if (!(low < high)) return ui.toast('The first value must be less than the second');
+      viewer.set({ channel: { range: low === values[0] && high === values[1] ? null : [low, high] } }, 'ui');
+    },
+  });
   const normals = toggle({ label: 'Normals of the file', hint: 'Off: the page computes them from the voxels', get: (s) => s.normals, set: (on) => viewer.set({ normals: on }, 'ui') });
   const lod = slider({
     label: 'Level of detail', min: 0, max: 8, step: 0.25, get: (s) => s.lod, set: (value) => viewer.set({ lod: value }, 'ui'),
@@ -83,19 +97,21 @@ export function viewPanel(ui) {
     set: (name) => { if (AXES[name]) change(withUp(viewer.camera(), AXES[name])); },
   });
   const lock = button('Look around with the mouse', () => hands.lockPointer(), { title: 'Hides the pointer until Escape (key L)' });
-  const refresh = refreshAll([mode, show, level, colors, normals, lod, cubes, fov, up]);
+  const refresh = refreshAll([mode, show, channel, range, level, colors, normals, lod, cubes, fov, up]);
   return {
     element: h('div', {},
       group('', mode.element, lock),
       group('Views', h('div', { class: 'grid' }, ...SIDES.map(([name, label], i) =>
         button(label, () => hands.view(name), { title: `${label} (key ${i + 1})` })),
       button('Frame', () => hands.frame(), { title: 'Show the whole scene (key F)' })), fov.element, up.element),
-      group('Picture', show.element, meaning, level.element, colors.element, normals.element, lod.element, cubes.element),
+      group('Picture', show.element, meaning, channel.element, range.element, level.element, colors.element, normals.element, lod.element, cubes.element),
       group('', button('Reset all settings', () => ui.reset()))),
     refresh(/** @type {Settings} */ settings) {
       const { info } = viewer;
       level.limits(0, levels(), 1);
-      colors.element.hidden = !info?.hasColors;
+      channel.element.hidden = !info?.channels.length;
+      range.element.hidden = viewer.channel() === null;
+      colors.element.hidden = !info?.hasColors || settings.channel.name !== null;
       normals.element.hidden = !info?.hasNormals;
       meaning.textContent = MEANINGS[settings.show] ?? '';
       meaning.hidden = settings.show === 'light';
