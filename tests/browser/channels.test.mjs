@@ -26,7 +26,7 @@ function hills() {
 }
 
 describeInBrowsers('channels', (_, browser) => {
-  const file = hills(), [lowX, , lowZ] = JSON.parse(voxdag('info', file, '--json')).grid.origin;
+  const file = hills();
   /** What is seen of the page, in a page of its own. @param {string} url */
   const load = async (url) => {
     const page = await open(browser(), url, { width: 1000, height: 500 });

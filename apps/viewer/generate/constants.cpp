@@ -266,10 +266,15 @@ std::string glsl_value(const Json& value) {
 
 std::string glsl_definitions(const Json& groups) {
   std::string text;
-  for (const auto& [group, constants] : groups.items())
+  for (const auto& [group, constants] : groups.items()) {
+    // Shaders read none of these.
+    if (group == "FILE" || group == "CELL_INDEX" || group == "CHANNELS" || group == "WIRE" ||
+        group == "VIEW")
+      continue;
     for (const auto& [name, value] : constants.items())
-      if (const std::string glsl = glsl_value(value); group != "FILE" && !glsl.empty())
+      if (const std::string glsl = glsl_value(value); !glsl.empty())
         text += "#define " + group + "_" + upper_snake(name) + " " + glsl + "\n";
+  }
   return text;
 }
 

@@ -13,7 +13,7 @@ import { bitCount, childMask, childOf } from './trace.js';
  */
 
 /** Cells of a page, as everywhere in a file. */
-export const PAGE_CELLS = 256;
+const PAGE_CELLS = 256;
 /** Cells from which on nobody waits for their number. */
 const MOST_COUNTED = 1e8;
 
@@ -21,7 +21,7 @@ const MOST_COUNTED = 1e8;
 export const idBits = (materials) => Math.ceil(Math.log2(Math.max(1, materials)));
 
 /** Returns at most 24 bits from bit `at`. @param {Uint32Array} words @param {number} at @param {number} count */
-export function bitsAt(words, at, count) {
+function bitsAt(words, at, count) {
   if (count === 0) return 0;
   const word = Math.floor(at / 32), bit = at % 32;
   const low = words[word] >>> bit, high = bit === 0 ? 0 : (words[word + 1] ?? 0) << (32 - bit);

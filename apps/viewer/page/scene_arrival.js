@@ -42,8 +42,8 @@ export class SceneArrival {
     this.hasEnded = false;
     /** What the loader was asked for and has not done. */
     this.asked = 0;
-    /** The channel that was asked for last. @type {string | null} */
-    this.channel = null;
+    /** The channel that was asked for last. */
+    this.channel = '';
     this.ended = this.#newEnd();
     this.loader = new SceneLoader((message) => this.#take(message));
   }
@@ -129,7 +129,7 @@ export class SceneArrival {
     this.report('level', { level: memory.shown, levels: info.levels, bytes: this.bytesLoaded });
   }
 
-  /** Loads a channel of the file, once its attributes are here and unless it was asked for last. @param {string | null} name */
+  /** Loads a channel of the file, once its attributes are here and unless it was asked for last. @param {string} name */
   show(name) {
     const channel = this.memory?.info.channels.find((one) => one.name === name);
     if (channel === undefined || !this.memory?.attributes || name === this.channel) return;

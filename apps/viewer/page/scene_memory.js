@@ -2,7 +2,6 @@
  * The levels of a scene that have arrived, in memory: for rays on the CPU, and to fill textures
  * again after the graphics card has lost them.
  */
-import { channelValue, rangeOf } from './channels.js';
 import { cellNumber, countMaterials, materialOf, overlayAt, withPlaces } from './materials.js';
 
 /** @typedef {import('./file/scene_loader.js').FileInfo} FileInfo */
@@ -29,7 +28,7 @@ export class SceneMemory {
     this.mostInstances = 1;
     /** @type {import('./file/scene_loader.js').Attributes | null} */
     this.attributes = null;
-    /** The channel that arrived last. @type {import('./channels.js').Channel | null} */
+    /** The channel that arrived last. @type {import('./file/scene_loader.js').Channel | null} */
     this.channel = null;
     /** @type {import('./materials.js').CellIndex | null} */
     this.cells = null;
@@ -50,10 +49,9 @@ export class SceneMemory {
     return given ?? (number < 0 ? null : materialOf(attributes.materials, number));
   }
 
-  /** Returns the value of the channel of a cell; null without a channel, and of cells that edits added. @param {import('./math.js').Vec3} voxel  One in the cell. @param {number} level @returns {number | null} */
+  /** Returns the value of the channel of a cell; null of cells that edits added. @param {import('./math.js').Vec3} voxel  One in the cell. @param {number} level */
   channelValue(voxel, level) {
-    const { cells, channel } = this, number = cells && channel ? cellNumber(this.dag(), cells, voxel, level) : -1;
-    return channel === null || number < 0 ? null : channelValue(channel, number);
+    return (this.cells && this.channel?.values[cellNumber(this.dag(), this.cells, voxel, level)]) ?? null;
   }
 
   /** Returns how many cells each material has; null before all have arrived, and if there are very many. */
@@ -82,11 +80,8 @@ export class SceneMemory {
       textures?.setLook(message);
       return;
     } else if (message.type === 'channel') {
-      const found = this.info.channels.find(({ name }) => name === message.name);
-      if (found === undefined) return;
-      const channel = { ...found, words: message.words };
-      this.channel = { ...channel, range: rangeOf(channel) };
-      textures?.setChannel(this.channel);
+      this.channel = message;
+      textures?.setChannel(message);
       return;
     } else {
       return;

@@ -30,9 +30,6 @@ const KINDS = {
   text: { write: (value) => value, read: (text) => text },
   free: { write: encodeURIComponent, read: decodeURIComponent },
   name: { write: (value) => value ?? 'none', read: (text) => (text === 'none' ? null : text) },
-  /** The name of a channel, which may be "none". */
-  channel: { write: (value) => value ?? '', read: (text) => text || null },
-  range: { write: (value) => (value ? value.join(',') : 'none'), read: (text) => (text === 'none' ? null : toVector(text)) },
   /** An environment: a link has no room for a map that the page does not begin with. */
   map: { write: (map) => (typeof map === 'string' || map === null ? map ?? 'none' : null), read: (text) => (text === 'none' ? null : text) },
   onOff: { write: (on) => (on ? 'on' : 'off'), read: (text) => (text === 'on' ? true : text === 'off' ? false : text) },
@@ -43,8 +40,8 @@ const KINDS = {
 const SIMPLE = [
   ['mode', KINDS.text, 'mode'],
   ['show', KINDS.text, 'show'],
-  ['channel', KINDS.channel, 'channel', 'name'],
-  ['range', KINDS.range, 'channel', 'range'],
+  ['channel', KINDS.free, 'channel', 'name'],
+  ['range', KINDS.vector, 'channel', 'range'],
   ['level', KINDS.optional, 'level'],
   ['colors', KINDS.onOff, 'colors'],
   ['normals', KINDS.onOff, 'normals'],

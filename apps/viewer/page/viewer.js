@@ -193,7 +193,7 @@ class CanvasViewer extends Events {
   /** Loads the channel that the settings name. @param {boolean} isNew  Whether to say that there is none. */
   #showChannel(isNew) {
     const { name } = this.settings.channel;
-    if (isNew && name !== null && this.info?.channels.every((channel) => channel.name !== name)) this.emit('note', `This scene has no channel ${name}.`);
+    if (isNew && name && this.info?.channels.every((channel) => channel.name !== name)) this.emit('note', `This scene has no channel ${name}.`);
     this.arrival?.show(name);
   }
 
@@ -223,7 +223,7 @@ class CanvasViewer extends Events {
   }
   channel() {
     const shown = this.arrival?.textures?.shownChannel(this.settings)?.of;
-    return shown ? { name: shown.name, kind: shown.kind, values: shown.range, range: this.settings.channel.range ?? shown.range, colors: CHANNELS.colors } : null;
+    return shown ? { name: shown.name, values: shown.range, range: this.settings.channel.range ?? shown.range, colors: CHANNELS.colors } : null;
   }
   /** @param {import('./viewer_types.js').Hit} hit */
   channelValue(hit) {

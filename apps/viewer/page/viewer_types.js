@@ -63,7 +63,7 @@
  *   goesOn: boolean) => void} change  Lets a function change the scene, and draws it; `goesOn`: more changes follow soon.
  * @property {(origin: Vec3, direction: Vec3, distance: number) => Hit | null} castNow  Unit direction.
  * @property {(hit: Hit) => number | null} material  Its id; null without materials.
- * @property {() => {name: string, kind: string, values: [number, number], range: [number, number], colors: number[][]} | null} channel  The channel that is shown, once it has
+ * @property {() => {name: string, values: [number, number], range: [number, number], colors: number[][]} | null} channel  The channel that is shown, once it has
  *   arrived: the least and the greatest of its values; those of the first and the last colour; and the colours, at equal distances.
  * @property {(hit: Hit) => number | null} channelValue  Of the channel that is shown; null without one, and for cells that edits added.
  * @property {() => number[] | null} materialCounts  Cells of the finest level with materials, by id; null before they have arrived, and for very large scenes.

@@ -9,12 +9,10 @@ import { loadText } from './text_assets.js';
 /** Codes of instances are this many times the binary logarithm of the number. */
 export const INSTANCE_STEPS = 4;
 
-const PARTS = ['source', 'blob_source', 'container', 'levels', 'attributes', 'channels', 'wire', 'worker'];
+const PARTS = ['source', 'blob_source', 'container', 'levels', 'attributes', 'wire', 'worker'];
 
-/**
- * A channel of a file; a value differs from the one that was given by at most `bound`. `offset` and `length` are its bytes.
- * @typedef {{name: string, kind: string, bound: number, values: number, offset: number, length: number}} ChannelInfo
- */
+/** A channel: `offset` and `length` are its bytes in the file. @typedef {{name: string, kind: string, bound: number, values: number, offset: number, length: number}} ChannelInfo */
+/** @typedef {{name: string, values: Float32Array | Int32Array, range: [number, number]}} Channel */
 /**
  * Contents of a file. `levelBegin` are the first words of the levels in NODE.
  * @typedef {{
@@ -34,7 +32,7 @@ const PARTS = ['source', 'blob_source', 'container', 'levels', 'attributes', 'ch
  *   | {type: 'level', level: number, shown: number, words: Uint32Array, codes: Uint8Array | null, mostInstances: number}
  *   | {type: 'leaves', shown: number, halves: Uint32Array, codes: Uint8Array | null, mostInstances: number}
  *   | ({type: 'attributes'} & Attributes)
- *   | {type: 'channel', name: string, words: Uint32Array}
+ *   | ({type: 'channel'} & Channel)
  *   | {type: 'note', text: string} | {type: 'done', requests: number}
  *   | {type: 'error', title: string, text: string}} LoaderMessage
  */
@@ -66,7 +64,7 @@ export class SceneLoader {
     this.worker?.postMessage({ type: 'load', ...wanted });
   }
 
-  /** Loads a channel, after what was asked for before. @param {import('./scene_loader.js').ChannelInfo} channel */
+  /** Loads a channel, after what was asked for before. @param {ChannelInfo} channel */
   loadChannel(channel) {
     this.worker?.postMessage({ type: 'channel', channel });
   }

@@ -23,7 +23,7 @@ import { samplePlace, sampleTable } from './sample_tables.js';
 
 /** Parts of every shader that casts rays. */
 const CAST = ['dag', 'grid_ray', 'walk', 'camera'];
-const SHADERS = ['quad.vert', ...CAST, 'look', 'channel', 'materials', 'surface', 'view_sample', 'unit', 'sample', 'sky', 'shade', 'light', 'reproject', 'smooth', 'display', 'hits', 'reduce'];
+const SHADERS = ['quad.vert', ...CAST, 'look', 'materials', 'surface', 'view_sample', 'unit', 'sample', 'sky', 'shade', 'light', 'reproject', 'smooth', 'display', 'hits', 'reduce'];
 /** Pixels from which exposure and steps are taken. */
 const EXPOSURE_SIZE = [256, 144];
 /** Steps after which a cast ends without a hit, so that the graphics card never hangs. */
@@ -81,7 +81,7 @@ export class Renderer {
     let program = this.programs.get(key);
     if (program === undefined) {
       const text = (/** @type {string} */ part) => this.shaders.get(part) ?? '';
-      const cast = ['dag', 'grid_ray', ...(look || hidden ? ['look'] : []), ...(look ? ['channel'] : []), ...(hidden ? ['materials'] : []), 'walk', 'camera'];
+      const cast = ['dag', 'grid_ray', ...(look || hidden ? ['look'] : []), ...(hidden ? ['materials'] : []), 'walk', 'camera'];
       const parts = {
         sample: [...cast, 'surface', 'view_sample', 'unit', 'sample'],
         light: [...cast, ...(paths ? ['surface', 'view_sample'] : []), 'unit', 'sky', 'shade', 'light'],

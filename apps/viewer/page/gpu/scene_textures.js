@@ -1,7 +1,7 @@
 /** The scene in textures of the graphics card. */
-import { channelUniforms } from '../channels.js';
-import { CHANNELS, DAG } from '../constants.js';
+import { DAG } from '../constants.js';
 import { idBits } from '../materials.js';
+import { channelUniforms } from './color_scale.js';
 import { LongTexture, mostTexels } from './long_texture.js';
 
 /** @typedef {import('../file/scene_loader.js').FileInfo} FileInfo */
@@ -36,7 +36,7 @@ export class SceneTextures {
     /** @type {{index: Attributes['index'], colorBits: number, normalBits: number, slots: LongTexture, values: (LongTexture | null)[],
      *   materials: {count: number, words: LongTexture, pages: LongTexture} | null} | null} */
     this.look = null;
-    /** @type {{of: import('../channels.js').Channel, words: LongTexture} | null} */
+    /** @type {{of: import('../file/scene_loader.js').Channel, values: LongTexture} | null} */
     this.channel = null;
   }
 
@@ -55,17 +55,16 @@ export class SceneTextures {
     };
   }
 
-  /** Uploads a channel in place of another. @param {import('../channels.js').Channel} channel */
-  setChannel(channel) {
-    if (this.channel !== null) this.gl.deleteTexture(this.channel.words.texture);
-    const words = new LongTexture(this.gl, 'R32UI', channel.words.length + 1);
-    words.set(0, channel.words);
-    this.channel = { of: channel, words };
+  /** Uploads a channel in place of another. @param {import('../file/scene_loader.js').Channel} of */
+  setChannel(of) {
+    if (this.channel !== null) this.gl.deleteTexture(this.channel.values.texture);
+    this.channel = { of, values: new LongTexture(this.gl, 'R32UI', of.values.length) };
+    this.channel.values.set(0, new Uint32Array(of.values.buffer));
   }
 
-  /** Returns the channel that settings show, once it is here. @param {Partial<Pick<import('../settings.js').Settings, 'channel'>>} wanted */
+  /** Returns the channel that settings show, once it is here. @param {Partial<import('../settings.js').Settings>} settings */
   shownChannel({ channel }) {
-    return this.look !== null && channel !== undefined && this.channel?.of.name === channel.name ? this.channel : null;
+    return this.channel?.of.name === channel?.name ? this.channel : null;
   }
 
   /** Uploads the words of values that edits gave to cells. @param {Uint32Array} words */
@@ -99,7 +98,7 @@ export class SceneTextures {
 
   /**
    * Sets the uniforms of look.glsl and returns its textures.
-   * @param {import('./gl_tools.js').Program} program @param {Pick<import('../settings.js').Settings, 'colors' | 'normals'> & Partial<import('../settings.js').Settings>} wanted
+   * @param {import('./gl_tools.js').Program} program @param {Partial<import('../settings.js').Settings>} wanted
    * @returns {{[name: string]: WebGLTexture}}
    */
   lookTextures(program, wanted) {
@@ -120,13 +119,10 @@ export class SceneTextures {
     program.ints({ u_finest: look.index.finest, u_color_bits: wanted.colors ? look.colorBits : -1, u_normal_bits: wanted.normals ? look.normalBits : -1 });
     const channel = this.shownChannel(wanted), shown = channel && channelUniforms(channel.of, wanted.channel?.range ?? null);
     program.ints(shown?.ints ?? { u_channel: -1 });
-    if (channel !== null && shown !== null) {
-      program.floats(shown.floats);
-      program.uints({ u_channel_packed: 4 * Math.ceil(channel.of.values / CHANNELS.blockValues) });
-    }
+    program.floats(shown?.floats ?? {});
     const [colorWords, colorPages, normalWords, normalPages] = look.values.map((v) => (v ?? look.slots).texture);
     const u_overlay = (this.overlay ?? look.slots).texture;
-    return { u_overlay, u_slots: look.slots.texture, u_color_words: channel?.words.texture ?? colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages };
+    return { u_overlay, u_slots: look.slots.texture, u_color_words: channel?.values.texture ?? colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages };
   }
 
   /**
@@ -154,7 +150,7 @@ export class SceneTextures {
   hidden = null;
 
   #all() {
-    return [this.hidden, this.channel?.words ?? null, this.overlay, this.look?.materials?.words ?? null, this.look?.materials?.pages ?? null, this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
+    return [this.hidden, this.channel?.values ?? null, this.overlay, this.look?.materials?.words ?? null, this.look?.materials?.pages ?? null, this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
   }
   bytes() {
     return this.#all().reduce((sum, texture) => sum + (texture?.bytes ?? 0), 0);

@@ -3,7 +3,7 @@
  * them, and `refresh` shows settings that have changed elsewhere.
  */
 import { clamp } from '../math.js';
-import { h } from './dom.js';
+import { h, resize } from './dom.js';
 import { icon } from './icons.js';
 
 /**
@@ -127,57 +127,16 @@ export function toggle({ label, get, set, hint }) {
  * @returns {Control}
  */
 export function choice({ label, options, get, set }) {
-  const id = newId(), select = h('select', { id, on: { change: () => set(/** @type {T} */ (select.value)) } });
-  let listed = '';
-  const list = () => {
-    const now = typeof options === 'function' ? options() : options, text = JSON.stringify(now);
-    if (text !== listed) select.replaceChildren(...now.map(([value, name]) => h('option', { value }, name)));
-    listed = text;
-  };
-  list();
+  const id = newId();
+  const select = h('select', { id, on: { change: () => set(/** @type {T} */ (select.value)) } });
   return {
     element: h('div', { class: 'row choice' }, h('label', { for: id }, label), select),
     refresh(settings) {
-      list();
+      const all = typeof options === 'function' ? options() : options;
+      resize(select, all.length, () => h('option'));
+      all.forEach(([value, name], i) => Object.assign(select.options[i], { value, text: name }));
       select.value = get(settings);
     },
-  };
-}
-
-/**
- * Makes fields for the two ends of a range. A field that is emptied gives null.
- * @param {{label: string, get: () => [number, number] | null, set: (range: [number | null, number | null]) => void, text: (value: number) => string}} options
- * @returns {Control}
- */
-export function rangeFields({ label, get, set, text }) {
-  const fields = ['least', 'greatest'].map((end, i) => {
-    const take = () => {
-      const now = get(), typed = field.value.trim(), value = typed === '' ? null : typedNumber(typed, new Map());
-      // A number that was not changed stays as it is, in full.
-      if (now !== null && typed !== text(now[i]) && (typed === '' || value !== null)) set(i === 0 ? [value, now[1]] : [now[0], value]);
-      refresh();
-    };
-    const field = h('input', {
-      type: 'text', class: 'number', inputmode: 'decimal', 'aria-label': `${label}, ${end}`, autocomplete: 'off', on: {
-        focus: () => field.select(), blur: take,
-        keydown: (event) => {
-          if (event.key === 'Escape') {
-            event.stopPropagation();
-            refresh();
-          }
-          if (event.key === 'Enter' || event.key === 'Escape') field.blur();
-        },
-      },
-    });
-    return field;
-  });
-  const refresh = () => {
-    const now = get();
-    fields.forEach((field, i) => { if (now !== null) field.value = text(now[i]); });
-  };
-  return {
-    element: h('div', { class: 'row range', role: 'group', 'aria-label': label }, h('span', {}, label), h('span', {}, fields[0], ' – ', fields[1])),
-    refresh() { if (!fields.some((field) => field === document.activeElement)) refresh(); },
   };
 }
 
@@ -205,11 +164,12 @@ export function segments({ label, options, get, set, bare }) {
 
 /**
  * Makes a line of text.
- * @param {{label: string, most: number, hint?: string, get: (settings: Settings) => string, set: (value: string) => void}} options  `most`: characters.
+ * @param {{label: string, most: number, hint?: string, get: (settings: Settings) => string, set: (value: string) => void, event?: string}} options  `most`: characters;
+ *   `event`: "change" waits for the end of typing.
  * @returns {Control}
  */
-export function textField({ label, most, hint, get, set }) {
-  const id = newId(), input = h('input', { type: 'text', id, maxlength: most, on: { input: () => set(input.value) } });
+export function textField({ label, most, hint, get, set, event = 'input' }) {
+  const id = newId(), input = h('input', { type: 'text', id, maxlength: most, on: { [event]: () => set(input.value) } });
   return {
     element: h('div', { class: 'row text' }, h('label', { for: id, title: hint }, label), input),
     refresh(settings) { if (input.value !== get(settings)) input.value = get(settings); },

@@ -1,7 +1,7 @@
 /** The panel "View": how one moves, what is shown and how finely. */
 import { addScaled, cross, length, sub } from '../math.js';
 import { compassOf } from '../hands/pose.js';
-import { button, choice, group, rangeFields, refreshAll, segments, slider, toggle } from './controls.js';
+import { button, choice, group, refreshAll, segments, slider, textField, toggle, typedNumber } from './controls.js';
 import { shownCubes } from '../settings.js';
 import { h } from './dom.js';
 import { valueText } from './numbers.js';
@@ -63,16 +63,17 @@ export function viewPanel(ui) {
   });
   const colors = toggle({ label: 'Colours', get: (s) => s.colors, set: (on) => viewer.set({ colors: on }, 'ui') });
   const channel = choice({
-    label: 'Colour by', get: (s) => s.channel.name ?? '',
-    options: () => [['', viewer.info?.hasColors ? 'colours of the file' : 'nothing'], ...(viewer.info?.channels ?? []).map(({ name }) => /** @type {[string, string]} */ ([name, name]))],
-    set: (name) => viewer.set({ channel: { name: name || null, range: null }, ...(name && { show: 'light' }) }, 'ui'),
+    label: 'Colour by', get: (s) => s.channel.name,
+    options: () => ['', ...(viewer.info?.channels ?? []).map(({ name }) => name)].map((name) => [name, name || 'Colours of the file']),
+    set: (name) => viewer.set({ channel: { name, range: null }, ...(name && { show: 'light' }) }, 'ui'),
   });
-  const range = rangeFields({
-    label: 'Range', text: valueText, get: () => viewer.channel()?.range ?? null,
-    set: ([least, most]) => {
-      const values = viewer.channel()?.values ?? [0, 1], [low, high] = [least ?? values[0], most ?? values[1]];
-      if (!(low < high)) return ui.toast('The first value must be less than the second');
-      viewer.set({ channel: { range: low === values[0] && high === values[1] ? null : [low, high] } }, 'ui');
+  const range = textField({
+    label: 'Range', most: 60, event: 'change', hint: 'The values of the first and the last colour; empty: those of the channel', get: () => viewer.channel()?.range.map(valueText).join(' to ') ?? '',
+    set: (typed) => {
+      const [least, most] = typed.split('to').map((part) => typedNumber(part, new Map()) ?? NaN);
+      if (typed && !(least < most)) ui.toast('Type two values, such as 0 to 100', true);
+      else viewer.set({ channel: { range: typed ? [least, most] : null } }, 'ui');
+      ui.refresh();
     },
   });
   const normals = toggle({ label: 'Normals of the file', hint: 'Off: the page computes them from the voxels', get: (s) => s.normals, set: (on) => viewer.set({ normals: on }, 'ui') });
@@ -111,7 +112,7 @@ export function viewPanel(ui) {
       level.limits(0, levels(), 1);
       channel.element.hidden = !info?.channels.length;
       range.element.hidden = viewer.channel() === null;
-      colors.element.hidden = !info?.hasColors || settings.channel.name !== null;
+      colors.element.hidden = !info?.hasColors || settings.channel.name !== '';
       normals.element.hidden = !info?.hasNormals;
       meaning.textContent = MEANINGS[settings.show] ?? '';
       meaning.hidden = settings.show === 'light';

@@ -147,9 +147,8 @@ async function handle(request) {
       await loadLevels(request.shown);
       await loadAttributes(request);
     } else if (cells > 0) {
-      const { channel } = request, words = asWords(await readSlices(channel.offset, channel.length));
-      checkChannel(words, channel, cells);
-      send({ type: 'channel', name: channel.name, words }, [words.buffer]);
+      const { channel } = request, decoded = decodeChannel(asWords(await readSlices(channel.offset, channel.length)), channel, cells);
+      send({ type: 'channel', name: channel.name, ...decoded }, [decoded.values.buffer]);
     }
     send({ type: 'done', requests: source instanceof ServerSource ? source.requests : 0 });
   }
