@@ -11,8 +11,8 @@
 namespace voxdag::cli {
 
 /// Rows of a structured array without padding: t, voxel, face, hit, and the normal, the colour,
-/// the material and the channels of the voxel if `look` stores them. They are looked up by voxel, so they do not
-/// depend on the device that cast the ray.
+/// the material and the channels of the voxel if `look` stores them. They are looked up by voxel,
+/// so they do not depend on the device that cast the ray.
 class HitRows {
  public:
   /// The hits are in a grid of 2^levels voxels per side. `look` may be empty.

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 
 #include "voxdag/render/film/environment_json.hpp"
@@ -17,7 +16,6 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kMaxBytes = std::uint64_t{16} << 20;
 constexpr int kVersion = 1;
 constexpr std::size_t kMaxTextBytes = 8000;
-constexpr double kMostNumber = std::numeric_limits<double>::max();
 
 /// Reads the settings. `key` is the whole key of a value, such as "sun.angle".
 class Reader {
@@ -268,22 +266,13 @@ class Reader {
   void read_channel(const Json& json) {
     each_member(
         json, "channel",
-        {{"name",
-          [&](const Json& value) {
-            if (value.is_null()) return;
-            settings_.channel = text(value, "channel.name");
-            if (!is_channel_name(settings_.channel))
-              refuse("channel.name", "is not a name of letters, digits, '_', '-' and '.'");
-          }},
+        {{"name", [&](const Json& value) { settings_.channel = text(value, "channel.name"); }},
          {"range", [&](const Json& value) {
             if (value.is_null()) return;
-            if (!value.is_array() || value.size() != 2)
-              refuse("channel.range", "is not an array of two numbers");
-            ChannelRange& range = settings_.channel_range.emplace();
-            range.least = number(value[0], "channel.range[0]", -kMostNumber, kMostNumber);
-            range.most = number(value[1], "channel.range[1]", -kMostNumber, kMostNumber);
-            if (!(range.least < range.most))
-              refuse("channel.range", "must have its first number below the second");
+            if (!value.is_array() || value.size() != 2 || !value[0].is_number() ||
+                !value[1].is_number() || !(value[0].get<double>() < value[1].get<double>()))
+              refuse("channel.range", "is not an array of two numbers, the smaller one first");
+            settings_.channel_range = {value[0].get<double>(), value[1].get<double>()};
           }}});
   }
 
