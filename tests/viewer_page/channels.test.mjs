@@ -1,12 +1,17 @@
 import assert from 'node:assert/strict';
+import fs from 'node:fs';
 import { test } from 'node:test';
 
-import { channelUniforms, channelValue, rangeOf } from '../../apps/viewer/page/channels.js';
+import { channelUniforms } from '../../apps/viewer/page/gpu/color_scale.js';
 import { DEFAULTS, mergeSettings } from '../../apps/viewer/page/settings.js';
 import { settingsFromHash, settingsToHash } from '../../apps/viewer/page/settings_link.js';
 import { channelGradient } from '../../apps/viewer/page/ui/legend.js';
 import { valueText } from '../../apps/viewer/page/ui/numbers.js';
 import { randomNumbers } from './random.mjs';
+
+/** A function of the worker, whose script has no exports. */
+const decodeChannel = new Function('CHANNELS', 'brokenFile', `${fs.readFileSync(new URL('../../apps/viewer/page/file/worker/attributes.js', import.meta.url), 'utf8')}
+  return decodeChannel;`)({ blockValues: 256, maxWidth: 32 }, (text) => new Error(text));
 
 /** Packs numbers as docs/format.md says of CHAN, in blocks of 256. `exact` says which blocks hold codes. */
 function packed(numbers, exact = () => false) {
@@ -32,34 +37,39 @@ const codeOf = (value) => {
 test('every value and the range are those that were packed', () => {
   for (const size of [1, 2, 300, 70000, 2 ** 32]) {
     const random = randomNumbers(size), numbers = Array.from({ length: 1500 }, () => Math.floor(random() * size) - (size > 1e9 ? 2 ** 31 : 7));
-    const channel = { kind: 'i32', bound: 0, values: numbers.length, words: packed(numbers) };
-    assert.deepEqual(numbers.map((_, i) => channelValue(channel, i)), numbers);
-    assert.deepEqual(rangeOf(channel), [Math.min(...numbers), Math.max(...numbers)]);
+    const { values, range } = decodeChannel(packed(numbers), { name: 'a', kind: 'i32', bound: 0, values: 1500 }, 1500);
+    assert.deepEqual([Array.from(values), range], [numbers, [Math.min(...numbers), Math.max(...numbers)]]);
   }
 });
 
 test('floats are codes, or multiples of twice the bound', () => {
-  const random = randomNumbers(3), values = Array.from({ length: 600 }, () => Math.fround((random() - 0.4) * 10 ** Math.floor(random() * 20 - 10)));
-  const lossless = { kind: 'f32', bound: 0, values: 600, words: packed(values.map(codeOf)) };
-  assert.deepEqual(values.map((_, i) => channelValue(lossless, i)), values);
-  assert.deepEqual(rangeOf(lossless), [Math.min(...values), Math.max(...values)]);
+  const random = randomNumbers(3), floats = Array.from({ length: 600 }, () => Math.fround((random() - 0.4) * 10 ** Math.floor(random() * 20 - 10)));
+  const lossless = decodeChannel(packed(floats.map(codeOf)), { name: 'a', kind: 'f32', bound: 0, values: 600 }, 600);
+  assert.deepEqual([Array.from(lossless.values), lossless.range], [floats, [Math.min(...floats), Math.max(...floats)]]);
   // Blocks 0 and 2 hold multiples, block 1 codes.
-  const numbers = values.map((value, i) => (i >> 8 === 1 ? codeOf(value) : i % 90 - 20));
-  const bounded = { kind: 'f32', bound: 0.1, values: 600, words: packed(numbers, (block) => block === 1) };
-  values.forEach((value, i) => assert.equal(channelValue(bounded, i), i >> 8 === 1 ? value : Math.fround(numbers[i] * 0.2)));
+  const numbers = floats.map((value, i) => (i >> 8 === 1 ? codeOf(value) : i % 90 - 20));
+  const { values } = decodeChannel(packed(numbers, (block) => block === 1), { name: 'a', kind: 'f32', bound: 0.1, values: 600 }, 600);
+  floats.forEach((value, i) => assert.equal(values[i], i >> 8 === 1 ? value : Math.fround(numbers[i] * 0.2)));
+});
+
+test('words that lead outside, and floats that are no numbers, are refused', () => {
+  const numbers = Array.from({ length: 300 }, (_, i) => i), of = { name: 'a', kind: 'i32', bound: 0, values: 300 }, words = packed(numbers);
+  for (let length = 0; length < words.length - 1; ++length) assert.throws(() => decodeChannel(words.subarray(0, length), of, 300), /channel a/i);
+  assert.throws(() => decodeChannel(words, of, 301), /has 300 values for 301 cells/);
+  for (const [at, value] of [[0, 1000], [1, 1], [3, 33]]) assert.throws(() => decodeChannel(words.with(at, value), of, 300), /lies outside/);
+  assert.throws(() => decodeChannel(packed([0, 0x7fc00000]), { ...of, kind: 'f32', values: 2 }, 2), /no numbers/);
 });
 
 test('whole numbers are compared with the least one before they become floats', () => {
-  const time = { kind: 'i32', bound: 0, range: [1600000000, 1600000282] };
-  assert.deepEqual(channelUniforms(time, null), { ints: { u_channel: 0, u_least_number: 1600000000 }, floats: { u_channel_scale: [0, 282, 8e8, 141] } });
-  const { ints, floats } = channelUniforms(time, [1600000050.5, 1600000100]);
-  assert.deepEqual([ints.u_least_number, ...floats.u_channel_scale.slice(0, 2)], [1600000050, 0.5, 49.5]);
-  assert.deepEqual(channelUniforms({ kind: 'f32', bound: 0.25, range: [-20.5, 30] }, null).floats.u_channel_scale, [0, 101, -10.25, 25.25]);
+  const time = { values: new Int32Array(), range: [1600000000, 1600000282] }, heat = { values: new Float32Array(), range: [-20.5, 30] };
+  assert.deepEqual(channelUniforms(time, null), { ints: { u_channel: 0, u_channel_least: 1600000000 }, floats: { u_channel_ends: [0, 282] } });
+  assert.deepEqual(channelUniforms(time, [1600000050.5, 1600000100]), { ints: { u_channel: 0, u_channel_least: 1600000050 }, floats: { u_channel_ends: [0.5, 50] } });
+  assert.deepEqual(channelUniforms(heat, null), { ints: { u_channel: 1, u_channel_least: 0 }, floats: { u_channel_ends: [-10.25, 15] } });
   // A channel of one value has the first colour.
-  assert.deepEqual(channelUniforms({ kind: 'u8', bound: 0, range: [7, 7] }, null).floats.u_channel_scale.slice(0, 2), [0, 1]);
+  assert.deepEqual(channelUniforms({ values: new Int32Array(), range: [7, 7] }, null).floats.u_channel_ends, [0, 1]);
   // Half the range of all floats is a float.
-  const most = 3.4028234663852886e38;
-  assert.equal(channelUniforms({ kind: 'f32', bound: 0, range: [-most, most] }, null).floats.u_channel_scale[3], most);
+  const most = 3.4028234663852886e38, [low, high] = channelUniforms(heat, [-most, most]).floats.u_channel_ends;
+  assert.equal(high - low, most);
 });
 
 test('values are written with the digits that tell them from other floats', () => {
@@ -71,11 +81,11 @@ test('the channel and its range are settings, and parts of a link', () => {
   const settings = mergeSettings(DEFAULTS, { channel: { name: 'heat', range: [-1.5, 20] } });
   assert.equal(settingsToHash(settings), 'channel=heat&range=-1.5,20');
   assert.deepEqual(settingsFromHash('#channel=heat&range=-1.5,20'), { settings, problems: [] });
-  assert.equal(settingsToHash(mergeSettings(settings, { channel: { name: null, range: null } }), null, settings), 'channel=&range=none');
+  assert.equal(settingsToHash(mergeSettings(settings, { channel: { name: '', range: null } }), null, settings), 'channel=&range=none');
   assert.deepEqual(settingsFromHash('#channel=&range=none', settings).settings, DEFAULTS);
   assert.equal(settingsFromHash('#channel=none').settings.channel.name, 'none');
   assert.deepEqual(mergeSettings(settings, { channel: { range: null } }).channel, { name: 'heat', range: null });
-  for (const [channel, reason] of [[{ name: 'a b' }, /"channel.name" is not a name/], [{ range: [2, 2] }, /must have its first number below/], [{ range: [1] }, /two numbers/]])
+  for (const [channel, reason] of [[{ name: null }, /"channel.name" is not a text/], [{ range: [2, 2] }, /the smaller one first/], [{ range: [1] }, /two numbers/]])
     assert.throws(() => mergeSettings(DEFAULTS, { channel }), reason);
   assert.equal(settingsFromHash('#range=3,1').problems.length, 1);
 });

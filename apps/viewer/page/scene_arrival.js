@@ -134,7 +134,7 @@ export class SceneArrival {
     const channel = this.memory?.info.channels.find((one) => one.name === name);
     if (channel === undefined || !this.memory?.attributes || name === this.channel) return;
     this.channel = name;
-    if (channel.length / 4 > mostTexels(this.gl)) return this.report('note', `The channel ${name} is too large for the graphics card.`);
+    if (channel.values > mostTexels(this.gl)) return this.report('note', `The channel ${name} is too large for the graphics card.`);
     if (this.hasEnded) this.ended = this.#newEnd();
     this.hasEnded = false;
     ++this.asked;
