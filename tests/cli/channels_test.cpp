@@ -116,10 +116,10 @@ TEST_F(Channels, PicturesTakeThemFromAViewAndOptionsWin) {
     return read_text(path("o.png"));
   };
   const std::string heat = picture({"--color-by", "scalar_T", "--range", "-4,2"});
-  EXPECT_EQ(picture({"--view", path("view.json"), "--ground"}),
-            picture({"--color-by", "scalar_T", "--range", "-4,2", "--ground"}));
-  EXPECT_EQ(picture({"--view", path("view.json"), "--ground", "--color-by", "intensity"}),
-            picture({"--color-by", "intensity", "--ground"}));
+  EXPECT_EQ(picture({"--view", path("view.json"), "--ground", "on"}),
+            picture({"--color-by", "scalar_T", "--range", "-4,2", "--ground", "on"}));
+  EXPECT_EQ(picture({"--view", path("view.json"), "--ground", "on", "--color-by", "intensity"}),
+            picture({"--color-by", "intensity", "--ground", "on"}));
   EXPECT_NE(heat, picture({}));
 }
 
