@@ -82,6 +82,8 @@ export interface SceneInfo {
   hasNormals: boolean;
   /** Names by id; null if the file has none. */
   materials: string[] | null;
+  /** `kind`: 'u8', 'u16', 'i16', 'i32' or 'f32'; a value differs from the one that was given by at most `bound`. */
+  channels: { name: string; kind: string; bound: number }[];
   /** The view that the scene suggests; of open() and build() for a square picture. */
   view: Camera;
   /** The view of the file, with the direction to the sun if it is an interior. */
@@ -144,6 +146,8 @@ export interface Settings {
   /** Numbers of the materials that are hidden. */
   hidden: number[];
   show: 'light' | 'level' | 'steps' | 'sharing' | 'normal' | 'depth' | 'occlusion';
+  /** The channel whose values are the colours, or ''; the values of the first and the last colour, null: those of the channel. */
+  channel: { name: string; range: [number, number] | null };
   section: { box: Box | null; plane: { point: Vec3; normal: Vec3 } | null; hatch: boolean };
   /** How Hands move the camera. */
   mode: 'orbit' | 'fly' | 'walk';
@@ -170,6 +174,10 @@ export interface Viewer {
   contains(point: Vec3): boolean;
   castNow(origin: Vec3, direction: Vec3, most: number): Hit | null;
   material(hit: Hit): number | null;
+  /** The channel that is shown, once it has arrived: its least and greatest value, those of the first and the last colour, and the colours. */
+  channel(): { name: string; values: [number, number]; range: [number, number]; colors: number[][] } | null;
+  /** The value of that channel at a hit; null for cells that edits added. */
+  channelValue(hit: Hit): number | null;
   /** Returns a PNG in full quality, once the scene has arrived. */
   capture(options?: { width?: number; height?: number; samples?: number; camera?: Camera; signal?: AbortSignal; progress?: (part: number) => void }): Promise<Blob>;
   /** Waits for the finished picture. */

@@ -74,7 +74,7 @@ async function load(file, signal) {
         if (message.type === 'info') {
           scene = message.scene ?? file;
           memory = new SceneMemory(message.info);
-          loader.load({ shown: message.info.levels, colors: false, normals: false, materials: message.info.materials !== null });
+          loader.load({ shown: message.info.levels, colors: false, normals: false, materials: message.info.materials !== null, channels: false });
         } else if (message.type === 'error') reject(new Error(`${message.title}. ${message.text}`));
         else if (message.type === 'done') resolve(undefined);
         else memory?.add(message, null);

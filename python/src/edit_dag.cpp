@@ -1,5 +1,5 @@
-/// DAGs from DAGs: set operations, moves, dilation, components. Results keep colours, normals and
-/// materials; coarser DAGs keep colours only, and warn of what they drop.
+/// DAGs from DAGs: set operations, moves, dilation, components. Results keep the attributes of
+/// their voxels.
 #include <pybind11/operators.h>
 #include <pybind11/stl.h>
 
@@ -23,49 +23,12 @@
 #include "voxdag/file/model/aligned_models.hpp"
 #include "voxdag/file/model/edited.hpp"
 #include "voxdag/formats/exports/export_scene.hpp"
-#include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
-#include "voxdag/stored/attributes/look_reader.hpp"
+#include "voxdag/stored/attributes/coarsen_attributes.hpp"
 
 namespace py = pybind11;
 
 namespace voxdag::python {
 namespace {
-
-/// The result of an edit, and whether it dropped attributes of its source.
-struct Edited {
-  DagPointer dag;
-  bool drops = false;
-};
-
-/// Calls make(work), which returns Edited, as run_work() does. Warns if attributes were dropped.
-template <class Make>
-DagPointer run_edit(const Make& make) {
-  const Edited edited = run_work(make);
-  if (edited.drops)
-    warn(edited.dag->look().has_colors()
-             ? "the result has no normals, materials and channels of its source"
-             : "the result has no colours, normals, materials and channels of its source");
-  return edited.dag;
-}
-
-/// Returns the model with the colours that visit(add) adds: add(voxel, colour), which may give a
-/// voxel several colours: it gets their mean, in linear light. Each voxel of `dag` needs one.
-template <class Visit>
-DagPointer colored_dag(VdagMetadata metadata, Work work, const Visit& visit) {
-  constexpr std::size_t kColorsInMemory = std::size_t{1} << 26;
-  ColoredVoxelBuilder builder(metadata.grid.levels, kColorsInMemory,
-                              std::filesystem::temp_directory_path(), work);
-  std::uint64_t count = 0;
-  visit([&](Vec3i voxel, Value8 color) {
-    work.poll_seldom(count++);
-    builder.add(voxel, {color.x, color.y, color.z});
-  });
-  auto [dag, attributes] = builder.finish(0);  // The colours are not coded with a loss again.
-  metadata.attributes.resolution = metadata.grid.resolution();
-  metadata.attributes.colors = {0, attributes.color_errors.squared};
-  return std::make_shared<Dag>(
-      DagModel(std::move(dag), std::move(attributes), std::move(metadata)));
-}
 
 /// Returns the model of an edit; its voxels keep the attributes of `models`.
 DagPointer edited_dag(std::span<const PlacedModel> models, Svdag dag, const Grid& grid,
@@ -189,23 +152,20 @@ DagPointer reoriented(const Dag& dag, const Orientation& orientation, const std:
 DagPointer coarser(const Dag& dag, std::int64_t resolution) {
   const int levels = levels_of(resolution);
   if (levels > dag.grid().levels) throw py::value_error("resolution exceeds that of the DAG");
-  return run_edit([&](Work work) -> Edited {
+  return run_work([&](Work work) {
     Svdag coarse = coarsen(dag.view(), levels, work);
     VdagMetadata metadata = coarser_metadata(dag.model().metadata(), coarse.view());
-    metadata.attributes = {};
-    const LookView look = dag.look();
-    if (!look.has_colors())
-      return {std::make_shared<Dag>(DagModel(std::move(coarse), {}, std::move(metadata))),
-              !look.is_empty()};
-    LookReader reader(look);
-    const int fine = dag.grid().levels, cut = fine - levels;
-    const DagPointer colored = colored_dag(metadata, work, [&](const auto& add) {
-      for_each_voxel(dag.view(), whole_grid(fine), [&](Vec3i v) {
-        add({v.x >> cut, v.y >> cut, v.z >> cut}, reader.read(v, fine).color);
-      });
-    });
-    return {colored,
-            look.has_normals() || look.has_materials() || dag.model().attributes().has_channels()};
+    const DagAttributesView fine = dag.model().attributes();
+    DagAttributes kept = coarsen_attributes({dag.view(), fine}, coarse.view(), {}, work);
+    if (fine.is_empty()) metadata.attributes = {};
+    if (const int finest = fine.index.finest_level; !fine.is_empty() && finest > levels) {
+      metadata.attributes.resolution = metadata.grid.resolution();
+      // The errors of the cells that stay are not known.
+      for (auto* const values : {&metadata.attributes.colors, &metadata.attributes.normals})
+        if (*values) *values = {(*values)->bound, {}};
+    }
+    return std::make_shared<Dag>(
+        DagModel(std::move(coarse), std::move(kept), std::move(metadata), work));
   });
 }
 
@@ -262,7 +222,8 @@ axis: 'x', 'y' or 'z'. turns: quarter turns; one about z takes x to y.)")
            R"(Joins voxels to larger ones, at the same place in the world.
 
 resolution: voxels per side of the new grid, a power of two. A voxel of it is set if its place has
-voxels, and gets their mean colour.)")
+voxels, and has the colour, normal, material and channels that the DAG stores for that place: of colours,
+normals and channels the mean of the voxels, of materials the most frequent one.)")
       .def("components", &component_table, py::kw_only(), py::arg("neighbours") = 26,
            R"(Counts connected components, the largest first. Returns (K, 2) uint64.
 

@@ -1,5 +1,6 @@
 """Channels: from arrays and files, through edits and files, and to exports."""
 import struct
+import warnings
 
 import numpy as np
 import pytest
@@ -69,6 +70,35 @@ def test_files_and_edits_keep_channels(tmp_path):
     shifted = voxdag.from_coords([[3, 3, 3]], channels={"heat": [9.0], "other": [1]}) | dag
     assert shifted.channel("heat", [[3, 3, 3], [1, 0, 0]]).tolist() == [9.0, 2.5]
     assert shifted.channel("other").tolist() == [1] * 5
+
+
+@pytest.mark.parametrize("resolution", [16, 4])
+def test_coarser_grids_keep_the_means_of_their_cells(resolution):
+    rng = np.random.default_rng(9)
+    coords = np.unique(rng.integers(0, 64, (4000, 3)), axis=0)
+    given = {"heat": rng.normal(0, 50, len(coords)).astype(np.float32), "count": rng.integers(-300, 300, len(coords)).astype(np.int16)}
+    colors = rng.integers(0, 256, (len(coords), 3), np.uint8)
+    dag = voxdag.from_coords(coords, resolution=64, colors=colors, channels=given)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        coarse = dag.coarsen(resolution)
+    assert coarse.info["has_colors"] and [row["name"] for row in coarse.channels] == list(given)
+    for name, values in given.items():
+        # Level by level: a cell has the mean of its children, each with the weight of its voxels, in the channel's kind.
+        places, means, weights = coords, values.astype(float), np.ones(len(coords))
+        for _ in range(int(np.log2(64 // resolution))):
+            places, of = np.unique(places // 2, axis=0, return_inverse=True)
+            of = of.ravel()
+            sums, weight = np.zeros(len(places)), np.zeros(len(places))
+            np.add.at(sums, of, means * weights)
+            np.add.at(weight, of, weights)
+            means = sums / weight
+            means = np.floor(means + 0.5) if values.dtype == np.int16 else means.astype(np.float32).astype(float)
+            weights = weight
+        stored = coarse.channel(name, places)
+        assert stored.dtype == values.dtype and len(coarse.coords()) == len(places)
+        # Sums in another order may round to the next float.
+        np.testing.assert_allclose(stored.astype(float), means, rtol=0 if name == "count" else 1e-5, atol=0 if name == "count" else 1e-5)
 
 
 def test_exports_come_back(tmp_path):

@@ -1,10 +1,14 @@
 // Channels from `voxdag import`, in reports, edits, pictures and exports.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "npy_rays.hpp"
 #include "process.hpp"
 #include "support/temp_dir.hpp"
+#include "voxdag/file/npy.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -98,6 +102,79 @@ TEST_F(Channels, PicturesShowThemAsColours) {
   words = render;
   words.insert(words.end(), {"--color-by", "heat"});
   expect_failure(run_voxdag(words), 1, "has no channel 'heat': its channels are intensity");
+}
+
+TEST_F(Channels, PicturesTakeThemFromAViewAndOptionsWin) {
+  ASSERT_EQ(import({"--channel", "intensity", "--channel", "scalar_T"}).status, 0);
+  write_text(dir_ / "view.json", R"({"channel": {"name": "scalar_T", "range": [-4, 2]}})");
+  const auto picture = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"render", path("p.vdag"), "--size",     "24x24",
+                                   "-q",     "-o",           path("o.png")};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProcessResult result = run_voxdag(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_text(path("o.png"));
+  };
+  const std::string heat = picture({"--color-by", "scalar_T", "--range", "-4,2"});
+  EXPECT_EQ(picture({"--view", path("view.json"), "--ground", "on"}),
+            picture({"--color-by", "scalar_T", "--range", "-4,2", "--ground", "on"}));
+  EXPECT_EQ(picture({"--view", path("view.json"), "--ground", "on", "--color-by", "intensity"}),
+            picture({"--color-by", "intensity", "--ground", "on"}));
+  EXPECT_NE(heat, picture({}));
+}
+
+TEST_F(Channels, TraceAndQueryWriteTheirValues) {
+  ASSERT_EQ(import({"--channel", "intensity:as t", "--channel", "scalar_T"}).status, 0);
+  // Along x from the left: the first voxel, and none.
+  write_text(dir_ / "rays.npy", rays_npy({{-5, 0, 0, 0, 1, 0, 0, 100}, {-5, 9, 0, 0, 1, 0, 0, 9}}));
+  const auto rows = [&](const std::string& dtype, std::size_t bytes) {
+    NpyReader reader(path("out.npy"), dtype, {}, bytes);
+    std::vector<std::string> all(reader.rows(), std::string(bytes, '\0'));
+    for (std::string& row : all) reader.read_rows(row.data(), 1);
+    return all;
+  };
+  const auto expect_values = [](const std::string& row, int intensity, float heat) {
+    float stored = 0;
+    std::memcpy(&stored, row.data() + row.size() - 4, 4);
+    EXPECT_EQ(static_cast<unsigned char>(row[row.size() - 5]), intensity);
+    if (std::isnan(heat))
+      EXPECT_TRUE(std::isnan(stored));
+    else
+      EXPECT_EQ(stored, heat);
+  };
+  const std::string fields = ", ('channel_t', '|u1'), ('scalar_T', '<f4')]";
+  ProcessResult result =
+      run_voxdag({"trace", path("p.vdag"), "--rays", path("rays.npy"), "-o", path("out.npy")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  auto found =
+      rows("[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1')" + fields, 23);
+  expect_values(found[0], 12, 2);  // The means of 10 and 13, of 1.5 and 2.5.
+  expect_values(found[1], 0, NAN);
+
+  NpyWriter points(path("points.npy"), "<f8", {3}, sizeof(double), 2);
+  const double places[] = {1, 0, 0.25, 30, 30, 30};
+  points.write_rows(places, 2);
+  points.commit();
+  result =
+      run_voxdag({"query", path("p.vdag"), "--points", path("points.npy"), "-o", path("out.npy")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  found = rows(
+      "[('occupied', '|b1'), ('voxel', '<i4', (3,)), ('nearest', '<i4', (3,)), ('distance', "
+      "'<f4'), ('t', '|u1'), ('scalar_T', '<f4')]",
+      34);
+  expect_values(found[0], 200, -4);
+  expect_values(found[1], 7, 0.3f);
+
+  NpyWriter segments(path("segments.npy"), "<f8", {6}, sizeof(double), 2);
+  const double ends[] = {9, 0, 0, -9, 0, 0, 9, 9, 9, 9, 9, 10};
+  segments.write_rows(ends, 2);
+  segments.commit();
+  result = run_voxdag(
+      {"query", path("p.vdag"), "--segments", path("segments.npy"), "-o", path("out.npy")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  found = rows("[('clear', '|b1'), ('t', '<f4'), ('voxel', '<i4', (3,))" + fields, 22);
+  expect_values(found[0], 200, -4);
+  expect_values(found[1], 0, NAN);
 }
 
 TEST_F(Channels, WhatIsWrongIsSaid) {

@@ -15,6 +15,8 @@
 #include "voxdag/render/surface_normal.hpp"
 #include "voxdag/render/surface_point.hpp"
 #include "voxdag/render/tone_map.hpp"
+#include "voxdag/stored/attributes/channel_colors.hpp"
+#include "voxdag/stored/attributes/channels.hpp"
 #include "voxdag/stored/attributes/value_pages.hpp"
 
 namespace voxdag {
@@ -106,6 +108,27 @@ Json pages_constants() {
           {"channelBits", channel_bits}};
 }
 
+/// The chunk CHAN, whose offsets are in bytes, and the colours of channels.
+Json channel_constants() {
+  Json kinds = Json::array(), colors = Json::array();
+  for (std::uint32_t kind = 0; kind < kChannelKinds; ++kind)
+    kinds.push_back(name_of(static_cast<ChannelKind>(kind)));
+  for (const Value8& color : kColorMap) colors.push_back({color.x, color.y, color.z});
+  return {{"most", kMaxChannels},
+          {"headerBytes", sizeof(ChannelsHeader)},
+          VOXDAG_OFFSET(ChannelsHeader, channels),
+          VOXDAG_OFFSET(ChannelsHeader, values),
+          {"entryBytes", sizeof(ChannelEntry)},
+          {"nameBytes", sizeof(ChannelEntry::name)},
+          VOXDAG_OFFSET(ChannelEntry, kind),
+          VOXDAG_OFFSET(ChannelEntry, bound),
+          VOXDAG_OFFSET(ChannelEntry, words),
+          {"kinds", kinds},
+          {"blockValues", kChannelBlockValues},
+          VOXDAG_CONSTANT(ChannelBlock, kMaxWidth),
+          {"colors", colors}};
+}
+
 /// The wire form of values. Contexts count bits.
 Json wire_constants() {
   return {{"headerBytes", sizeof(WireHeader)},
@@ -180,6 +203,7 @@ Json all_constants() {
         VOXDAG_OFFSET(CellIndexHeader, cells),
         VOXDAG_OFFSET(CellIndexHeader, width)}},
       {"PAGES", pages_constants()},
+      {"CHANNELS", channel_constants()},
       {"WIRE", wire_constants()},
       {"SAMPLES",
        {VOXDAG_CONSTANT(SampleTables, kSets), VOXDAG_CONSTANT(SampleTables, kRotations)}},
@@ -242,10 +266,15 @@ std::string glsl_value(const Json& value) {
 
 std::string glsl_definitions(const Json& groups) {
   std::string text;
-  for (const auto& [group, constants] : groups.items())
+  for (const auto& [group, constants] : groups.items()) {
+    // Shaders read none of these.
+    if (group == "FILE" || group == "CELL_INDEX" || group == "CHANNELS" || group == "WIRE" ||
+        group == "VIEW")
+      continue;
     for (const auto& [name, value] : constants.items())
-      if (const std::string glsl = glsl_value(value); group != "FILE" && !glsl.empty())
+      if (const std::string glsl = glsl_value(value); !glsl.empty())
         text += "#define " + group + "_" + upper_snake(name) + " " + glsl + "\n";
+  }
   return text;
 }
 

@@ -48,6 +48,20 @@ std::string read(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// Returns a shader without comments, a fifth of its compressed size. Lines keep their numbers.
+std::string without_comments(const std::string& shader) {
+  std::string text;
+  for (std::size_t at = 0; at < shader.size();) {
+    const std::size_t end = std::min(shader.find('\n', at), shader.size());
+    const std::string_view line = std::string_view(shader).substr(at, end - at);
+    const std::string_view code = line.substr(0, line.find("//"));
+    text += code.substr(0, code.find_last_not_of(' ') + 1);
+    text += '\n';
+    at = end + 1;
+  }
+  return text;
+}
+
 /// Writes the file unless it has these bytes already: a file that did not change is not compiled
 /// again.
 void write(const fs::path& file, const std::string& bytes) {
@@ -129,7 +143,9 @@ void embed(int argc, char** argv) {
     const std::string argument = argv[i], path = argument.substr(0, argument.find('='));
     const fs::path from =
         path == argument ? page / path : fs::path(argument.substr(path.size() + 1));
-    files.push_back({path, content_type(path), read(from)});
+    const std::string bytes = read(from);
+    files.push_back(
+        {path, content_type(path), path.ends_with(".glsl") ? without_comments(bytes) : bytes});
     has_program |= path == "build/voxdag.js";
   }
   if (has_program) announce_program(files);

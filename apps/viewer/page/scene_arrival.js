@@ -4,6 +4,7 @@
  */
 import { inlineScene } from './file/byte_source.js';
 import { SceneLoader } from './file/scene_loader.js';
+import { mostTexels } from './gpu/long_texture.js';
 import { SceneTextures, finestLevelThatFits } from './gpu/scene_textures.js';
 import { boundsOf, firstView, sceneInfo } from './scene_info.js';
 import { SceneMemory } from './scene_memory.js';
@@ -39,12 +40,19 @@ export class SceneArrival {
     this.guessed = [0, 1, 0];
     /** Whether the loader has sent all that it can: it has finished or failed. */
     this.hasEnded = false;
-    /** @type {Promise<void>} */
-    this.ended = new Promise((resolve) => { this.#resolve = resolve; });
+    /** What the loader was asked for and has not done. */
+    this.asked = 0;
+    /** The channel that was asked for last. */
+    this.channel = '';
+    this.ended = this.#newEnd();
     this.loader = new SceneLoader((message) => this.#take(message));
   }
   /** @type {() => void} */
   #resolve = () => {};
+  /** @returns {Promise<void>} */
+  #newEnd() {
+    return new Promise((resolve) => { this.#resolve = resolve; });
+  }
 
   /**
    * Begins to load: from bytes, from an address, from a file of this computer, or else from the page itself or the file beside it.
@@ -84,7 +92,7 @@ export class SceneArrival {
       case 'note':
         return this.report('note', message.text);
       case 'done':
-        this.end();
+        if (--this.asked <= 0) this.end();
         return this.report('loaded', { requests: message.requests });
       case 'error':
         this.end();
@@ -104,7 +112,8 @@ export class SceneArrival {
     this.report('info', this.info);
     if (info.isEmpty) this.report('note', 'This scene has no voxels.');
     if (!isWhole) this.report('note', `This scene is too large for the graphics card: it is shown down to level ${finest} of ${info.levels}.`);
-    this.loader.load({ shown: finest, colors: info.hasColors && isWhole, normals: info.hasNormals && isWhole, materials: info.materials !== null && isWhole });
+    ++this.asked;
+    this.loader.load({ shown: finest, colors: info.hasColors && isWhole, normals: info.hasNormals && isWhole, materials: info.materials !== null && isWhole, channels: info.channels.length > 0 && isWhole });
   }
 
   /** Takes a level or the attributes. @param {LoaderMessage} message */
@@ -113,10 +122,23 @@ export class SceneArrival {
     if (info === null || memory === null || textures === null) return;
     memory.add(message, textures);
     if (message.type === 'attributes') return this.report('look', {});
+    if (message.type === 'channel') return this.report('channel', message.name);
     this.measure();
     if (memory.info.up === null && memory.shown <= 7) this.guessed = guessUp(memory.dag());
     this.fit();
     this.report('level', { level: memory.shown, levels: info.levels, bytes: this.bytesLoaded });
+  }
+
+  /** Loads a channel of the file, once its attributes are here and unless it was asked for last. @param {string} name */
+  show(name) {
+    const channel = this.memory?.info.channels.find((one) => one.name === name);
+    if (channel === undefined || !this.memory?.attributes || name === this.channel) return;
+    this.channel = name;
+    if (channel.values > mostTexels(this.gl)) return this.report('note', `The channel ${name} is too large for the graphics card.`);
+    if (this.hasEnded) this.ended = this.#newEnd();
+    this.hasEnded = false;
+    ++this.asked;
+    this.loader.loadChannel(channel);
   }
 
   /** Takes the bounds of the cells that have arrived or were edited. */

@@ -22,10 +22,10 @@ export const firstView = (box, { up, home }, guessed, aspect) => homeView(box, a
 
 /** Returns what is known before cells have arrived: the bounds are those of the grid. @param {FileInfo} file @param {Vec3} guessed @param {number} aspect @returns {SceneInfo} */
 export function sceneInfo(file, guessed, aspect) {
-  const { levels, resolution, origin, voxelSize, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, materials, source, home, cubes, unit } = file;
+  const { levels, resolution, origin, voxelSize, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, materials, channels, source, home, cubes, unit } = file;
   const side = voxelSize * resolution, box = { low: origin, high: /** @type {Vec3} */ (origin.map((x) => x + side)) };
   return {
-    name: source.name, levels, resolution, origin, voxelSize, bounds: box, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, materials, source,
+    name: source.name, levels, resolution, origin, voxelSize, bounds: box, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, materials, channels, source,
     view: firstView(box, file, guessed, aspect), home, cubes, unit,
   };
 }

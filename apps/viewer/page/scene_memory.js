@@ -28,6 +28,8 @@ export class SceneMemory {
     this.mostInstances = 1;
     /** @type {import('./file/scene_loader.js').Attributes | null} */
     this.attributes = null;
+    /** The channel that arrived last. @type {import('./file/scene_loader.js').Channel | null} */
+    this.channel = null;
     /** @type {import('./materials.js').CellIndex | null} */
     this.cells = null;
   }
@@ -45,6 +47,11 @@ export class SceneMemory {
     const number = cellNumber(this.dag(), cells, voxel, level);
     const given = overlayAt(this.overlay, this.version.materials, voxel, level, this.info.levels, number < 0);
     return given ?? (number < 0 ? null : materialOf(attributes.materials, number));
+  }
+
+  /** Returns the value of the channel of a cell; null of cells that edits added. @param {import('./math.js').Vec3} voxel  One in the cell. @param {number} level */
+  channelValue(voxel, level) {
+    return (this.cells && this.channel?.values[cellNumber(this.dag(), this.cells, voxel, level)]) ?? null;
   }
 
   /** Returns how many cells each material has; null before all have arrived, and if there are very many. */
@@ -72,6 +79,10 @@ export class SceneMemory {
       this.cells = withPlaces(message.index, this.info.levelBegin);
       textures?.setLook(message);
       return;
+    } else if (message.type === 'channel') {
+      this.channel = message;
+      textures?.setChannel(message);
+      return;
     } else {
       return;
     }
@@ -90,6 +101,7 @@ export class SceneMemory {
     textures.nodes.set(0, this.nodes);
     textures.leaves.set(0, this.leaves);
     if (this.attributes !== null) textures.setLook(this.attributes);
+    if (this.channel !== null) textures.setChannel(this.channel);
     if (this.overlay.length > 0) textures.setOverlay(this.overlay);
   }
 }

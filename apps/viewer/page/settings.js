@@ -38,6 +38,7 @@ import { cross, length, normalized, sub } from './math.js';
  * @property {boolean} normals
  * @property {number[]} hidden  Ids of the materials that rays pass through.
  * @property {Show} show
+ * @property {{name: string, range: [number, number] | null}} channel  The channel that gives the colours, or empty; the values of the first and the last colour, null: its own.
  * @property {{box: Box | null, plane: Plane | null, hatch: boolean}} section
  * @property {Mode} mode
  * @property {string} title  Of the page; empty: the name of the scene.
@@ -86,6 +87,7 @@ export const DEFAULTS = {
   normals: true,
   hidden: [],
   show: 'light',
+  channel: { name: '', range: null },
   section: { box: null, plane: null, hatch: true },
   mode: 'orbit',
   title: '',
@@ -98,7 +100,7 @@ export const DEFAULTS = {
 
 /** Changes that remove what belongs to one scene: light and picture stay. @type {PartialSettings} */
 export const NO_PLACES = {
-  camera: null, sun: { direction: null }, occlusion: { distance: 0 }, level: null, section: { box: null, plane: null }, mode: 'orbit',
+  camera: null, sun: { direction: null }, occlusion: { distance: 0 }, level: null, channel: { name: '', range: null }, section: { box: null, plane: null }, mode: 'orbit',
   title: '', licence: '', unit: null, measures: [], annotations: [], path: [],
 };
 
@@ -245,6 +247,10 @@ const measure = (value, key, _, ignored) => {
 };
 
 /** @type {Check} */
+const range = (value, key) =>
+  Array.isArray(value) && value.length === 2 && value.every(Number.isFinite) && value[0] < value[1] ? [...value] : refuse(key, 'is not an array of two numbers, the smaller one first');
+
+/** @type {Check} */
 const path = (value, key, _, ignored) => {
   const keys = list(pathKey, 10000)(value, key, null, ignored);
   for (let i = 1; i < keys.length; ++i)
@@ -286,6 +292,7 @@ const settingsCheck = record({
   normals: boolean,
   hidden: list(integer(0, 65534), 65535),
   show: oneOf(SHOWS),
+  channel: record({ name: text(63), range: orNull(range) }),
   section: record({
     box: orNull(whole({ low: vector, high: vector }, {}, checkBox)),
     plane: orNull(whole({ point: vector, normal: direction })),

@@ -40,6 +40,8 @@ const KINDS = {
 const SIMPLE = [
   ['mode', KINDS.text, 'mode'],
   ['show', KINDS.text, 'show'],
+  ['channel', KINDS.free, 'channel', 'name'],
+  ['range', KINDS.vector, 'channel', 'range'],
   ['level', KINDS.optional, 'level'],
   ['colors', KINDS.onOff, 'colors'],
   ['normals', KINDS.onOff, 'normals'],

@@ -1,4 +1,5 @@
 /** The viewer: a canvas that shows a scene. docs/viewer.md tells how to embed it. */
+import { CHANNELS } from './constants.js';
 import { Events } from './events.js';
 import { capture } from './gpu/capture.js';
 import { shownRange } from './gpu/color_scale.js';
@@ -163,7 +164,8 @@ class CanvasViewer extends Events {
   #report(event, ...values) {
     if (this.isDestroyed) return;
     this.emit(event, ...values);
-    if (event === 'info' || event === 'level' || event === 'look') this.#touch(false);
+    if (event === 'info' || event === 'level' || event === 'look' || event === 'channel') this.#touch(false);
+    if (event === 'info' || event === 'look') this.#showChannel(event === 'info');
     if (event === 'level' && this.settings.show === 'sharing') this.arrival?.showInstances();
     if (event === 'loaded') this.#wake();
     if (event === 'error') this.#endWaits();
@@ -180,10 +182,19 @@ class CanvasViewer extends Events {
   }
   /** @param {PartialSettings} changes @param {string} [by] */
   set(changes, by = 'program') {
+    const before = this.settings.channel.name;
     this.settings = mergeSettings(this.settings, changes);
+    this.#showChannel(this.settings.channel.name !== before);
     if (this.settings.show === 'sharing') this.arrival?.showInstances();
     this.emit('settings', this.settings, by);
     this.#touch(true);
+  }
+
+  /** Loads the channel that the settings name. @param {boolean} isNew  Whether to say that there is none. */
+  #showChannel(isNew) {
+    const { name } = this.settings.channel;
+    if (isNew && name && this.info?.channels.every((channel) => channel.name !== name)) this.emit('note', `This scene has no channel ${name}.`);
+    this.arrival?.show(name);
   }
 
   #aspect() {
@@ -209,6 +220,14 @@ class CanvasViewer extends Events {
   /** @param {import('./viewer_types.js').Hit} hit */
   material(hit) {
     return this.arrival?.memory?.material(hit.voxel, hit.level) ?? null;
+  }
+  channel() {
+    const shown = this.arrival?.textures?.shownChannel(this.settings)?.of;
+    return shown ? { name: shown.name, values: shown.range, range: this.settings.channel.range ?? shown.range, colors: CHANNELS.colors } : null;
+  }
+  /** @param {import('./viewer_types.js').Hit} hit */
+  channelValue(hit) {
+    return this.channel() && (this.arrival?.memory?.channelValue(hit.voxel, hit.level) ?? null);
   }
   materialCounts() {
     return this.arrival?.memory?.materialCounts() ?? null;

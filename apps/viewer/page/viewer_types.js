@@ -26,6 +26,7 @@
  * @property {boolean} hasColors
  * @property {boolean} hasNormals
  * @property {string[] | null} materials  Names by id; null if the file has none.
+ * @property {{name: string, kind: string, bound: number}[]} channels  kind: 'u8', 'u16', 'i16', 'i32' or 'f32'.
  * @property {{name?: string, vertices?: number, triangles?: number}} [source]
  * @property {Camera} view  The suggested view.
  * @property {(Camera & {sun?: Vec3}) | null} home  The view of the file, with a sun if it is an interior.
@@ -62,6 +63,9 @@
  *   goesOn: boolean) => void} change  Lets a function change the scene, and draws it; `goesOn`: more changes follow soon.
  * @property {(origin: Vec3, direction: Vec3, distance: number) => Hit | null} castNow  Unit direction.
  * @property {(hit: Hit) => number | null} material  Its id; null without materials.
+ * @property {() => {name: string, values: [number, number], range: [number, number], colors: number[][]} | null} channel  The channel that is shown, once it has
+ *   arrived: the least and the greatest of its values; those of the first and the last colour; and the colours, at equal distances.
+ * @property {(hit: Hit) => number | null} channelValue  Of the channel that is shown; null without one, and for cells that edits added.
  * @property {() => number[] | null} materialCounts  Cells of the finest level with materials, by id; null before they have arrived, and for very large scenes.
  * @property {(point: Vec3) => boolean} contains  Whether a point lies in a set voxel.
  * @property {(options?: {width?: number, height?: number, samples?: number, camera?: Camera, signal?: AbortSignal,

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "cli/channel_columns.hpp"
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
@@ -50,14 +51,17 @@ struct QueryArguments {
 };
 
 std::string answer_points(const QueryArguments& arguments, const DagModel& file, Session& session) {
-  constexpr std::size_t kBytes = 29;
+  constexpr const char* kFields[] = {"occupied", "voxel", "nearest", "distance"};
   const SvdagView dag = file.view();
+  const ChannelColumns channels({dag, file.attributes()}, kFields);
+  const std::size_t row_bytes = 29 + channels.bytes();
   const Grid& grid = file.grid();
   const std::uint64_t points = answer_rows(
       arguments.points, 3, arguments.output,
       "[('occupied', '|b1'), ('voxel', '<i4', (3,)), ('nearest', '<i4', (3,)), "
-      "('distance', '<f4')]",
-      kBytes, session,
+      "('distance', '<f4')" +
+          channels.dtype() + "]",
+      row_bytes, session,
       [&](const std::vector<double>& values, std::size_t count, std::vector<std::byte>& rows) {
         constexpr std::size_t kChunk = 256;
         polled_for(
@@ -69,13 +73,15 @@ std::string answer_points(const QueryArguments& arguments, const DagModel& file,
                 const auto nearest =
                     nearest_voxel(dag, (world - grid.origin) * (1 / grid.voxel_size));
                 const bool is_occupied = nearest && nearest->voxel == voxel;
-                std::byte* row = rows.data() + kBytes * i;
+                std::byte* row = rows.data() + row_bytes * i;
                 row = store_value(row, is_occupied);
                 row = store_value(row, voxel);
                 row = store_value(row, nearest ? nearest->voxel : Vec3i{-1, -1, -1});
-                store_value(row, nearest ? static_cast<float>(std::sqrt(nearest->distance2) *
-                                                              grid.voxel_size)
-                                         : HUGE_VALF);
+                row = store_value(row, nearest ? static_cast<float>(std::sqrt(nearest->distance2) *
+                                                                    grid.voxel_size)
+                                               : HUGE_VALF);
+                channels.store(row, nearest.has_value(), nearest ? nearest->voxel : Vec3i{},
+                               dag.levels);
               }
             });
       });
@@ -84,7 +90,9 @@ std::string answer_points(const QueryArguments& arguments, const DagModel& file,
 
 std::string answer_segments(const QueryArguments& arguments, const DagModel& file,
                             Session& session) {
-  constexpr std::size_t kBytes = 17;
+  constexpr const char* kFields[] = {"clear", "t", "voxel"};
+  const ChannelColumns channels({file.view(), file.attributes()}, kFields);
+  const std::size_t row_bytes = 17 + channels.bytes();
   const CpuScene scene{VoxelSet(file.view())};
   Grid grid = file.grid();
   const Vec3d near = float_origin(grid.bounds());  // Rays are in float32.
@@ -94,7 +102,8 @@ std::string answer_segments(const QueryArguments& arguments, const DagModel& fil
   std::uint64_t clear = 0;
   const std::uint64_t segments = answer_rows(
       arguments.segments, 6, arguments.output,
-      "[('clear', '|b1'), ('t', '<f4'), ('voxel', '<i4', (3,))]", kBytes, session,
+      "[('clear', '|b1'), ('t', '<f4'), ('voxel', '<i4', (3,))" + channels.dtype() + "]", row_bytes,
+      session,
       [&](const std::vector<double>& values, std::size_t count, std::vector<std::byte>& rows) {
         rays.clear();
         hits.resize(count);
@@ -108,10 +117,11 @@ std::string answer_segments(const QueryArguments& arguments, const DagModel& fil
         for (std::size_t i = 0; i < count; ++i) {
           const Hit& hit = hits[i];
           clear += hit.hit ? 0 : 1;
-          std::byte* row = rows.data() + kBytes * i;
+          std::byte* row = rows.data() + row_bytes * i;
           row = store_value(row, !hit.hit);
           row = store_value(row, hit.hit ? hit.t : 1.0f);
-          store_value(row, hit.hit ? hit.voxel : Vec3i{-1, -1, -1});
+          row = store_value(row, hit.hit ? hit.voxel : Vec3i{-1, -1, -1});
+          channels.store(row, hit.hit, hit.voxel, file.view().levels);
         }
       });
   return fmt::format("{} segments, {} clear", with_commas(segments), with_commas(clear));
@@ -260,11 +270,11 @@ void add_query_command(const Command& program, Session& session) {
   add(command.text(
       "--points", arguments->points, "P.npy",
       "For each point (N x 3 float32 or float64, world units): whether it is in a voxel, and the "
-      "nearest voxel with its distance"));
+      "nearest voxel with its distance and the channels of the file"));
   add(command.text(
       "--segments", arguments->segments, "S.npy",
       "For each segment (N x 6 float32 or float64, from and to): whether it meets no voxel, and "
-      "the first voxel that it meets"));
+      "the first voxel that it meets, with the channels of the file"));
   add_contact_options(command, arguments->contacts, add);
   const Option distances = add(
       command.flag("--distances", arguments->distances,

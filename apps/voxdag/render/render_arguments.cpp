@@ -159,6 +159,11 @@ void apply_view_file(RenderArguments& arguments, Session& session) {
     throw Error(view.file, "", "\"section\" cannot cut the triangles of --mesh: set it to null");
   view.colors = settings.colors;
   view.normals = settings.normals;
+  if (arguments.channel.empty() && !arguments.materials && !arguments.mesh.is_seen() &&
+      arguments.stream_memory == 0) {
+    arguments.channel = settings.channel;
+    arguments.channel_range = settings.channel_range;
+  }
   std::vector<std::string> warnings;
   for (const std::string& text : settings.ignored) warnings.push_back(view.file + ": " + text);
   print_warnings(warnings, session);

@@ -14,9 +14,12 @@ void append_value(std::byte*& row, const T& value) {
   row += sizeof value;
 }
 
+constexpr const char* kFields[] = {"t", "voxel", "face", "hit", "normal", "color", "material"};
+
 }  // namespace
 
-HitRows::HitRows(int levels, const LookView& look) : levels_(levels), look_(look) {
+HitRows::HitRows(int levels, const LookView& look)
+    : levels_(levels), look_(look), channels_(look.dag, kFields) {
   dtype_ = "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1')";
   row_bytes_ = 18;
   normals_ = look.has_normals();
@@ -33,7 +36,8 @@ HitRows::HitRows(int levels, const LookView& look) : levels_(levels), look_(look
     dtype_ += ", ('material', '<u2')";
     row_bytes_ += sizeof(std::uint16_t);
   }
-  dtype_ += "]";
+  dtype_ += channels_.dtype() + "]";
+  row_bytes_ += channels_.bytes();
 }
 
 void HitRows::pack(std::span<const Hit> hits, std::byte* rows) const {
@@ -47,7 +51,7 @@ void HitRows::pack_one(const Hit& hit, std::byte* row) const {
   append_value(row, hit.hit ? hit.voxel : Vec3i{-1, -1, -1});
   append_value(row, hit.hit ? hit.face : Face::kNone);
   append_value(row, hit.hit);
-  if (!normals_ && !colors_ && !look_.has_materials()) return;
+  if (look_.is_empty()) return;
   Vec3f normal{};
   Vec3<std::uint8_t> color{};
   const int shift = levels_ - hit.level;
@@ -62,6 +66,7 @@ void HitRows::pack_one(const Hit& hit, std::byte* row) const {
   if (look_.has_materials())
     append_value(row, static_cast<std::uint16_t>(hit.hit ? material_at(look_.dag, cell, hit.level)
                                                          : kMaxMaterials));
+  channels_.store(row, hit.hit, cell, hit.level);
 }
 
 }  // namespace voxdag::cli

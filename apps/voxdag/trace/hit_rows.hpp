@@ -4,14 +4,15 @@
 #include <span>
 #include <string>
 
+#include "cli/channel_columns.hpp"
 #include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/trace/hit.hpp"
 
 namespace voxdag::cli {
 
-/// Rows of a structured array without padding: t, voxel, face, hit, and the normal, the colour and
-/// the material of the voxel if `look` stores them. They are looked up by voxel, so they do not
-/// depend on the device that cast the ray.
+/// Rows of a structured array without padding: t, voxel, face, hit, and the normal, the colour,
+/// the material and the channels of the voxel if `look` stores them. They are looked up by voxel,
+/// so they do not depend on the device that cast the ray.
 class HitRows {
  public:
   /// The hits are in a grid of 2^levels voxels per side. `look` may be empty.
@@ -29,6 +30,7 @@ class HitRows {
 
   int levels_;
   LookView look_;
+  ChannelColumns channels_;
   bool normals_ = false, colors_ = false;
   std::string dtype_;
   std::size_t row_bytes_ = 0;

@@ -141,13 +141,13 @@ void add_trace_command(const Command& program, Session& session) {
             "Structured array of shape (N,): t, voxel, face (0 to 5: -x, +x, -y, +y, -z, +z; -1: "
             "the ray starts inside), hit; if the scene or --look stores normals, colours or "
             "materials, also normal (world space), color (sRGB, 0 to 255) or material (65535: "
-            "none)")
+            "none); and each channel under its name")
       .required();
   const Option look = add_look_option(command, arguments->look);
   command
       .flag("--in-place", arguments->in_place,
             "Cast at a file in the compact form without decoding it, on the CPU: takes less memory "
-            "and more time, and writes no normals, colours and materials")
+            "and more time, and writes no normals, colours, materials and channels")
       .not_with(look);
   add_device_option(command, arguments->device);
   add_threads_option(command, session);

@@ -10,6 +10,7 @@
 #include "voxdag/render/film/environment_json.hpp"
 #include "voxdag/render/film/picture_pass.hpp"
 #include "voxdag/render/film/view_settings.hpp"
+#include "voxdag/stored/attributes/channel_colors.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -69,6 +70,14 @@ std::string render_poster(const PageView& view, const ShownScene& scene, Work wo
     options.cube_pixels = 0;
   DagAttributesView attributes = dag.attributes();
   if (!settings.colors) attributes.colors = {};
+  ValuePages colors;
+  if (const std::size_t i = attributes.channels.find(settings.channel);
+      i < attributes.channels.count()) {
+    const ChannelView channel = attributes.channels[i];
+    colors = channel_colors(
+        channel, settings.channel_range ? *settings.channel_range : range_of(channel), work);
+    attributes.colors = colors.view();
+  }
   if (!settings.normals) attributes.normals = {};
   options.look = ColoredDagView{dag.dag(), attributes};
   const CpuScene voxels(dag.dag());

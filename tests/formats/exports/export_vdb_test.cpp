@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "exported_scene.hpp"
 #include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
 #include "support/voxel_sets.hpp"
+#include "voxdag/algebra/attributes/channel_of_voxels.hpp"
 #include "voxdag/formats/imports/import_voxels.hpp"
+#include "voxdag/stored/attributes/build_cell_index.hpp"
 
 namespace voxdag {
 namespace {
@@ -55,6 +59,45 @@ TEST(ExportVdb, VoxelsAndFullCellsAreReadBack) {
     for (int axis = 0; axis < 3; ++axis)
       EXPECT_NEAR(back.origin[axis], grid.to_world(Vec3d(lo))[axis], 1e-9);
   }
+}
+
+TEST(ExportVdb, ChannelsAreGridsOfTheirValues) {
+  const TempDir dir;
+  const ExportedScene scene(6, 500);
+  const auto heat = [](Vec3i v) { return 2.5 + 2.5 * ((v.x * 7 + v.y) % 5); };
+  const auto size = [](Vec3i v) { return 1.0 + v.x * v.z % 5; };
+  DagAttributes attributes;
+  attributes.index = build_cell_index(scene.view(), 6);
+  const CellIndexView index = attributes.index.view();
+  const EncodedChannel channels[] = {
+      channel_of_voxels(scene.view(), index, {"heat"}, heat),
+      channel_of_voxels(scene.view(), index, {"density", ChannelKind::kU8}, size)};
+  attributes.channels = join_channels(attributes.index.cells, channels);
+  ExportOptions options;
+  options.look = ColoredDagView{scene.view(), attributes.view()};
+  export_vdb(dir / "v.vdb", scene.view(), scene.grid, options);
+  // The voxels at or above each threshold tell every value.
+  const auto expect_grid = [&](const std::string& name, double step, const auto& value) {
+    for (double least = step; least <= 50; least += step) {
+      std::set<VoxelKey> expected, found;
+      for (const Vec3i v : scene.voxels)
+        if (value(v) >= least) expected.insert({v.x, v.y, v.z});
+      if (expected.empty()) break;
+      const auto source = open_voxel_source(dir / "v.vdb", {.threshold = least, .grid = name});
+      const Grid grid = *source->grid();
+      const Vec3d shift = (grid.origin - scene.grid.origin) * (1 / scene.grid.voxel_size);
+      source->visit_all([&](const VoxelBatch& batch) {
+        for (const Vec3d place : batch.places)
+          found.insert({static_cast<int>(std::lround(place.x + shift.x)),
+                        static_cast<int>(std::lround(place.y + shift.y)),
+                        static_cast<int>(std::lround(place.z + shift.z))});
+      });
+      EXPECT_EQ(found, expected) << name << " from " << least;
+    }
+  };
+  expect_grid("heat", 2.5, heat);
+  expect_grid("channel_density", 1, size);
+  expect_grid("density", 1, [](Vec3i) { return 1.0; });
 }
 
 TEST(ExportVdb, EqualVoxelsMakeEqualFiles) {

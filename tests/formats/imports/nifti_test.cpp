@@ -2,6 +2,7 @@
 #include "gzip_text.hpp"
 #include "random_volume.hpp"
 #include "support/brute_svdag.hpp"
+#include "voxdag/stored/attributes/look.hpp"
 
 namespace voxdag {
 namespace {
@@ -112,6 +113,39 @@ TEST_F(NiftiFiles, EveryTypeIsRead) {
   check_type<std::uint32_t>(768);
   check_type<std::int64_t>(1024);
   check_type<std::uint64_t>(1280);
+}
+
+TEST_F(NiftiFiles, ChannelsKeepTheValuesOfTheVoxels) {
+  for (const bool is_scaled : {false, true}) {
+    const RandomVolume<std::int16_t> volume({5, 3, 4}, 90);
+    Nifti nifti{1, false, {3, 5, 3, 4}, 4};
+    if (is_scaled) nifti.slope = 0.25, nifti.intercept = 10;
+    const auto value = [&](Vec3i v) {
+      return volume.at(v) * (is_scaled ? 0.25 : 1) + 10 * is_scaled;
+    };
+    write("v.nii.gz", gzip(header_of(nifti) + volume.bytes()));
+    for (const double threshold : {-2.0, 10.25}) {
+      ImportOptions options;
+      options.folder = dir_.path();
+      const auto source = open_voxel_source(
+          path("v.nii.gz"), {.threshold = threshold, .channels = {{"value", "heat"}}});
+      const std::vector<Vec3i> voxels = volume.voxels(
+          [&](std::int16_t v) { return v * (is_scaled ? 0.25 : 1) + 10 * is_scaled >= threshold; });
+      if (voxels.empty()) continue;
+      const ImportResult result = import_voxels(*source, options);
+      EXPECT_EQ(result.dag, brute_svdag(3, voxels));
+      const ColoredDagView colored{result.dag.view(), result.attributes.view()};
+      ASSERT_EQ(colored.attributes.channels.count(), 1u);
+      const ChannelView channel = colored.attributes.channels[0];
+      EXPECT_EQ(spec_of(channel),
+                (ChannelSpec{"heat", is_scaled ? ChannelKind::kF32 : ChannelKind::kI16, 0}));
+      for (const Vec3i v : voxels) {
+        std::uint64_t number = 0;
+        ASSERT_TRUE(find_number(colored, v, 3, number));
+        EXPECT_EQ(channel.read(number), value(v));
+      }
+    }
+  }
 }
 
 TEST_F(NiftiFiles, ColorsAreRead) {

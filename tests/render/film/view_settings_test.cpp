@@ -39,6 +39,20 @@ TEST_F(Settings, MissingKeysHaveTheDefaultsOfRender) {
   EXPECT_TRUE(settings.colors && settings.normals && settings.ignored.empty());
 }
 
+TEST_F(Settings, ChannelsHaveANameAndARange) {
+  EXPECT_EQ(read("{}").channel, "");
+  const ViewSettings settings = read(R"({"channel": {"name": "heat", "range": [-1.5, 20]}})");
+  EXPECT_EQ(settings.channel, "heat");
+  EXPECT_EQ(settings.channel_range->least, -1.5);
+  EXPECT_EQ(settings.channel_range->most, 20);
+  EXPECT_FALSE(read(R"({"channel": {"name": "", "range": null}})").channel_range);
+  EXPECT_EQ(error(R"({"channel": {"range": [2, 2]}})"),
+            "\"channel.range\" is not an array of two numbers, the smaller one first");
+  EXPECT_EQ(error(R"({"channel": {"range": [2]}})"),
+            "\"channel.range\" is not an array of two numbers, the smaller one first");
+  EXPECT_EQ(error(R"({"channel": {"name": 1}})"), "\"channel.name\" is not a text");
+}
+
 TEST_F(Settings, EveryKeyIsRead) {
   const ViewSettings settings = read(R"({"version": 1,
     "camera": {"eye": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1], "fov": 55.5},

@@ -2,7 +2,7 @@
  * Loads a scene through a worker. The worker reads the file root first, checks every level, and
  * sends it.
  */
-import { CELL_INDEX, DAG, FILE, PAGES, WIRE } from '../constants.js';
+import { CELL_INDEX, CHANNELS, DAG, FILE, PAGES, WIRE } from '../constants.js';
 import { host } from './host.js';
 import { loadText } from './text_assets.js';
 
@@ -11,12 +11,14 @@ export const INSTANCE_STEPS = 4;
 
 const PARTS = ['source', 'blob_source', 'container', 'levels', 'attributes', 'wire', 'worker'];
 
+/** A channel: `offset` and `length` are its bytes in the file. @typedef {{name: string, kind: string, bound: number, values: number, offset: number, length: number}} ChannelInfo */
+/** @typedef {{name: string, values: Float32Array | Int32Array, range: [number, number]}} Channel */
 /**
  * Contents of a file. `levelBegin` are the first words of the levels in NODE.
  * @typedef {{
  *   levels: number, resolution: number, origin: [number, number, number], voxelSize: number, voxels: number,
  *   dagNodesPerLevel: number[], fileBytes: number, isEmpty: boolean,
- *   words: number, leafBlocks: number, levelBegin: number[], hasColors: boolean, hasNormals: boolean, materials: string[] | null,
+ *   words: number, leafBlocks: number, levelBegin: number[], hasColors: boolean, hasNormals: boolean, materials: string[] | null, channels: ChannelInfo[],
  *   up: 'x' | 'y' | 'z' | null, unit: import('../settings.js').Unit | null, home: (import('../settings.js').Camera & {sun?: [number, number, number]}) | null, cubes: boolean,
  *   source: {name: string, vertices: number, triangles: number}}} FileInfo
  */
@@ -30,6 +32,7 @@ const PARTS = ['source', 'blob_source', 'container', 'levels', 'attributes', 'wi
  *   | {type: 'level', level: number, shown: number, words: Uint32Array, codes: Uint8Array | null, mostInstances: number}
  *   | {type: 'leaves', shown: number, halves: Uint32Array, codes: Uint8Array | null, mostInstances: number}
  *   | ({type: 'attributes'} & Attributes)
+ *   | ({type: 'channel'} & Channel)
  *   | {type: 'note', text: string} | {type: 'done', requests: number}
  *   | {type: 'error', title: string, text: string}} LoaderMessage
  */
@@ -48,7 +51,7 @@ export class SceneLoader {
   async open(from) {
     const texts = await Promise.all(PARTS.map((name) => loadText(`file/worker/${name}.js`)));
     if (this.closed) return;
-    const constants = Object.entries({ FILE, DAG, PAGES, WIRE, CELL_INDEX, INSTANCE_STEPS }).map(([name, value]) => `const ${name} = ${JSON.stringify(value)};\n`);
+    const constants = Object.entries({ FILE, DAG, PAGES, WIRE, CELL_INDEX, CHANNELS, INSTANCE_STEPS }).map(([name, value]) => `const ${name} = ${JSON.stringify(value)};\n`);
     this.worker = host.makeWorker(["'use strict';\n", ...constants, ...texts].join(''));
     this.worker.onmessage = (event) => this.onMessage(event.data);
     this.worker.onerror = (event) => this.onMessage({ type: 'error', title: 'The scene cannot be loaded', text: event.message || 'Its loader failed.' });
@@ -56,9 +59,14 @@ export class SceneLoader {
     else this.worker.postMessage({ type: 'open', url: new URL(from.url ?? '', document.baseURI).href });
   }
 
-  /** Loads cells down to level `shown`, and then attributes. @param {{shown: number, colors: boolean, normals: boolean, materials: boolean}} wanted */
+  /** Loads cells down to level `shown`, and then attributes. @param {{shown: number, colors: boolean, normals: boolean, materials: boolean, channels: boolean}} wanted */
   load(wanted) {
     this.worker?.postMessage({ type: 'load', ...wanted });
+  }
+
+  /** Loads a channel, after what was asked for before. @param {ChannelInfo} channel */
+  loadChannel(channel) {
+    this.worker?.postMessage({ type: 'channel', channel });
   }
 
   close() {

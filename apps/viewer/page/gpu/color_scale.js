@@ -1,4 +1,4 @@
-/** The colour scale of pictures of the structure: which values have which colours. */
+/** The colour scales of pictures of the structure and of channels: which values have which colours. */
 
 /** @typedef {import('../settings.js').Show} Show */
 
@@ -27,4 +27,14 @@ export function scaleColor(show, place) {
   const angle = 2 * Math.PI * (0.5 / 3 + 1 - 1.2 * v), spread = 1.3 * v * (1 - v) * 0.5;
   const c = Math.cos(angle) * spread, s = Math.sin(angle) * spread;
   return [v - 0.14861 * c + 1.78277 * s, v - 0.29227 * c - 0.90649 * s, v + 1.97294 * c].map((x) => Math.min(1, Math.max(0, x)));
+}
+
+/**
+ * Returns the uniforms of channelColor() in look.glsl. Whole numbers have more bits than floats: they count from the first colour.
+ * @param {import('../file/scene_loader.js').Channel} channel @param {[number, number] | null} shown  The values of the first and the last colour.
+ */
+export function channelUniforms({ values, range }, shown) {
+  const isFloat = values instanceof Float32Array, ends = shown ?? range;
+  const least = isFloat ? 0 : Math.max(-(2 ** 31), Math.min(Math.floor(ends[0]), 2 ** 31 - 1)), [low, high] = ends.map((x) => (isFloat ? x / 2 : x - least));
+  return { ints: { u_channel: Number(isFloat), u_channel_least: least }, floats: { u_channel_ends: [low, high > low ? high : low + Math.abs(low) + 1] } };
 }

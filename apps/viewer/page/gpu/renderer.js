@@ -2,7 +2,7 @@
  * Renders pictures of a scene with WebGL2: samples are found (sample.glsl), lit and added up
  * (light.glsl), and shown (display.glsl).
  */
-import { DAG, GLSL, LIGHT, NORMAL, SAMPLES } from '../constants.js';
+import { CHANNELS, DAG, GLSL, LIGHT, NORMAL, SAMPLES } from '../constants.js';
 import { INSTANCE_STEPS } from '../file/scene_loader.js';
 import { environmentOf } from '../environment.js';
 import { loadText } from '../file/text_assets.js';
@@ -90,7 +90,7 @@ export class Renderer {
       }[name] ?? [];
       const precision = ['float', 'int', 'sampler2D', 'usampler2D'].map((type) => `precision highp ${type};\n`).join('');
       const head = `#version 300 es\n${precision}${GLSL}\n#define SMOOTH_RADIUS ${SMOOTH_RADIUS}\n#define SMOOTH_NEAR ${SMOOTH_NEAR}\n#define TEXEL_BITS ${texelBits(this.gl)}\n#define MOST_STEPS ${MOST_STEPS}\n#define INSTANCE_STEPS ${INSTANCE_STEPS}\n` +
-          `#define CUT_ALBEDO vec3(${LIGHT.cutAlbedo})\n${SHOWS.map((show, i) => `#define SHOW_${show.toUpperCase()} ${i}\n`).join('')}` +
+          `#define CUT_ALBEDO vec3(${LIGHT.cutAlbedo})\n#define CHANNEL_COLORS ${CHANNELS.colors.map((c) => `vec3(${c})`)}\n${SHOWS.map((show, i) => `#define SHOW_${show.toUpperCase()} ${i}\n`).join('')}` +
           `${TONES.map((tone, i) => `#define TONE_KIND_${tone.toUpperCase()} ${i}\n`).join('')}` +
           `${BACKGROUNDS.map((name, i) => `#define BACKGROUND_${name.toUpperCase()} ${i}\n`).join('')}` +
           (look ? '#define HAS_LOOK\n' : '') + (hidden ? '#define HAS_HIDDEN\n' : '') + (paths ? '#define HAS_PATHS\n' : '');
@@ -175,7 +175,7 @@ export class Renderer {
     gl.enable(gl.SCISSOR_TEST);
     gl.scissor(0, y, picture.width, end - picture.rows);
 
-    const look = scene.look !== null && (settings.colors || settings.normals);
+    const look = scene.look !== null && (settings.colors || settings.normals || scene.shownChannel(settings) !== null);
     const hidden = hasHidden(shot);
     const sample = this.program('sample', look, hidden);
     sample.use();

@@ -1,6 +1,7 @@
 /** The scene in textures of the graphics card. */
 import { DAG } from '../constants.js';
 import { idBits } from '../materials.js';
+import { channelUniforms } from './color_scale.js';
 import { LongTexture, mostTexels } from './long_texture.js';
 
 /** @typedef {import('../file/scene_loader.js').FileInfo} FileInfo */
@@ -35,6 +36,8 @@ export class SceneTextures {
     /** @type {{index: Attributes['index'], colorBits: number, normalBits: number, slots: LongTexture, values: (LongTexture | null)[],
      *   materials: {count: number, words: LongTexture, pages: LongTexture} | null} | null} */
     this.look = null;
+    /** @type {{of: import('../file/scene_loader.js').Channel, values: LongTexture} | null} */
+    this.channel = null;
   }
 
   /** @param {Attributes} attributes */
@@ -50,6 +53,18 @@ export class SceneTextures {
       values: [colors, normals].flatMap((v) => (v === null ? [null, null] : [upload(v.words), upload(v.begins)])),
       materials: materials && { count: materials.materials, words: upload(materials.words), pages: upload(materials.begins) },
     };
+  }
+
+  /** Uploads a channel in place of another. @param {import('../file/scene_loader.js').Channel} of */
+  setChannel(of) {
+    if (this.channel !== null) this.gl.deleteTexture(this.channel.values.texture);
+    this.channel = { of, values: new LongTexture(this.gl, 'R32UI', of.values.length) };
+    this.channel.values.set(0, new Uint32Array(of.values.buffer));
+  }
+
+  /** Returns the channel that settings show, once it is here. @param {Partial<import('../settings.js').Settings>} settings */
+  shownChannel({ channel }) {
+    return this.channel?.of.name === channel?.name ? this.channel : null;
   }
 
   /** Uploads the words of values that edits gave to cells. @param {Uint32Array} words */
@@ -83,7 +98,7 @@ export class SceneTextures {
 
   /**
    * Sets the uniforms of look.glsl and returns its textures.
-   * @param {import('./gl_tools.js').Program} program @param {{colors: boolean, normals: boolean}} wanted
+   * @param {import('./gl_tools.js').Program} program @param {Partial<import('../settings.js').Settings>} wanted
    * @returns {{[name: string]: WebGLTexture}}
    */
   lookTextures(program, wanted) {
@@ -102,9 +117,12 @@ export class SceneTextures {
     gl.uniform1uiv(program.place('u_slot_begin'), begin);
     gl.uniform1uiv(program.place('u_level_begin'), levelBegin);
     program.ints({ u_finest: look.index.finest, u_color_bits: wanted.colors ? look.colorBits : -1, u_normal_bits: wanted.normals ? look.normalBits : -1 });
+    const channel = this.shownChannel(wanted), shown = channel && channelUniforms(channel.of, wanted.channel?.range ?? null);
+    program.ints(shown?.ints ?? { u_channel: -1 });
+    program.floats(shown?.floats ?? {});
     const [colorWords, colorPages, normalWords, normalPages] = look.values.map((v) => (v ?? look.slots).texture);
     const u_overlay = (this.overlay ?? look.slots).texture;
-    return { u_overlay, u_slots: look.slots.texture, u_color_words: colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages };
+    return { u_overlay, u_slots: look.slots.texture, u_color_words: channel?.values.texture ?? colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages };
   }
 
   /**
@@ -132,7 +150,7 @@ export class SceneTextures {
   hidden = null;
 
   #all() {
-    return [this.hidden, this.overlay, this.look?.materials?.words ?? null, this.look?.materials?.pages ?? null, this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
+    return [this.hidden, this.channel?.values ?? null, this.overlay, this.look?.materials?.words ?? null, this.look?.materials?.pages ?? null, this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
   }
   bytes() {
     return this.#all().reduce((sum, texture) => sum + (texture?.bytes ?? 0), 0);

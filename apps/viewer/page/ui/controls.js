@@ -3,7 +3,7 @@
  * them, and `refresh` shows settings that have changed elsewhere.
  */
 import { clamp } from '../math.js';
-import { h } from './dom.js';
+import { h, resize } from './dom.js';
 import { icon } from './icons.js';
 
 /**
@@ -123,16 +123,20 @@ export function toggle({ label, get, set, hint }) {
 /**
  * Makes a list that opens, to choose one of several.
  * @template {string} T
- * @param {{label: string, options: [T, string][], get: (settings: Settings) => T, set: (value: T) => void}} options
+ * @param {{label: string, options: [T, string][] | (() => [T, string][]), get: (settings: Settings) => T, set: (value: T) => void}} options
  * @returns {Control}
  */
 export function choice({ label, options, get, set }) {
   const id = newId();
-  const select = h('select', { id, on: { change: () => set(/** @type {T} */ (select.value)) } },
-    ...options.map(([value, name]) => h('option', { value }, name)));
+  const select = h('select', { id, on: { change: () => set(/** @type {T} */ (select.value)) } });
   return {
     element: h('div', { class: 'row choice' }, h('label', { for: id }, label), select),
-    refresh(settings) { select.value = get(settings); },
+    refresh(settings) {
+      const all = typeof options === 'function' ? options() : options;
+      resize(select, all.length, () => h('option'));
+      all.forEach(([value, name], i) => Object.assign(select.options[i], { value, text: name }));
+      select.value = get(settings);
+    },
   };
 }
 
@@ -160,11 +164,12 @@ export function segments({ label, options, get, set, bare }) {
 
 /**
  * Makes a line of text.
- * @param {{label: string, most: number, hint?: string, get: (settings: Settings) => string, set: (value: string) => void}} options  `most`: characters.
+ * @param {{label: string, most: number, hint?: string, get: (settings: Settings) => string, set: (value: string) => void, event?: string}} options  `most`: characters;
+ *   `event`: "change" waits for the end of typing.
  * @returns {Control}
  */
-export function textField({ label, most, hint, get, set }) {
-  const id = newId(), input = h('input', { type: 'text', id, maxlength: most, on: { input: () => set(input.value) } });
+export function textField({ label, most, hint, get, set, event = 'input' }) {
+  const id = newId(), input = h('input', { type: 'text', id, maxlength: most, on: { [event]: () => set(input.value) } });
   return {
     element: h('div', { class: 'row text' }, h('label', { for: id, title: hint }, label), input),
     refresh(settings) { if (input.value !== get(settings)) input.value = get(settings); },

@@ -277,7 +277,7 @@ export function createInterface(viewer, hands, container, base = DEFAULTS, editi
     openers.get('materials')?.toggleAttribute('hidden', !viewer.info?.materials);
     openers.get('build')?.toggleAttribute('hidden', !build.hasModel());
   };
-  viewer.on('look', () => refresh());
+  for (const event of ['look', 'channel']) viewer.on(event, () => refresh());
   viewer.on('info', () => {
     overlay.redraw();
     refresh();

@@ -1,7 +1,7 @@
 /** The colours of a picture of the structure: a bar with the values at its ends. */
 import { scaleColor } from '../gpu/color_scale.js';
 import { h, say } from './dom.js';
-import { countText } from './numbers.js';
+import { countText, valueText } from './numbers.js';
 
 /**
  * @typedef {import('../viewer_types.js').Viewer} Viewer
@@ -24,20 +24,25 @@ export function endLabels(show, [least, most]) {
 export const gradient = (show) => `linear-gradient(to right, ${Array.from({ length: STOPS }, (_, i) =>
   `rgb(${scaleColor(show, i / (STOPS - 1)).map((x) => Math.round(255 * x)).join(' ')})`).join(', ')})`;
 
+/** Returns the colours of a channel, at equal distances. @param {number[][]} colors */
+export const channelGradient = (colors) => `linear-gradient(to right, ${colors.map((color) => `rgb(${color.join(' ')})`).join(', ')})`;
+
 /** @param {Viewer} viewer */
 export function legend(viewer) {
-  const least = h('span'), bar = h('i'), most = h('span');
-  const element = h('div', { class: 'legend', hidden: true }, least, bar, most);
+  const name = h('strong'), least = h('span'), bar = h('i'), most = h('span');
+  const element = h('div', { class: 'legend', hidden: true }, name, least, bar, most);
   const refresh = () => {
-    const { show } = viewer.get(), range = viewer.shownRange();
+    const { show } = viewer.get(), channel = show === 'light' ? viewer.channel() : null, range = channel?.range ?? viewer.shownRange();
     element.hidden = range === null;
+    name.hidden = channel === null;
     if (range === null) return;
-    const [low, high] = endLabels(show, range);
+    const [low, high] = channel ? range.map(valueText) : endLabels(show, range);
+    say(name, channel?.name ?? '');
     say(least, low);
     say(most, high);
-    bar.style.backgroundImage = gradient(show);
+    bar.style.backgroundImage = channel ? channelGradient(channel.colors) : gradient(show);
   };
-  for (const event of ['info', 'level']) viewer.on(event, refresh);
+  for (const event of ['info', 'level', 'channel']) viewer.on(event, refresh);
   viewer.on('settings', (_, by) => { if (by !== 'hands' && by !== 'film') refresh(); });
   return element;
 }

@@ -2,7 +2,7 @@
 import { roundTo3, stepBelow } from '../math.js';
 import { copy, h, say } from './dom.js';
 import { materialName } from './materials_panel.js';
-import { lengthText } from './numbers.js';
+import { lengthText, valueText } from './numbers.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui
@@ -57,7 +57,9 @@ export class Readout {
     const level = info && hit.level < info.levels ? ` · level ${hit.level}` : '';
     const id = info?.materials ? this.ui.viewer.material(hit) : null;
     const material = info?.materials && id !== null ? ` · ${materialName(info.materials, id)}` : '';
-    return [`voxel ${hit.voxel.join(' ')}${level}${material}`, hit.position.map((x) => lengthText(x, step)).join('  ')];
+    const channel = this.ui.viewer.channel(), value = this.ui.viewer.channelValue(hit);
+    const shown = channel && value !== null ? ` · ${channel.name} ${valueText(value)}` : '';
+    return [`voxel ${hit.voxel.join(' ')}${level}${material}${shown}`, hit.position.map((x) => lengthText(x, step)).join('  ')];
   }
 
   /** @param {Hit | null} hit */

@@ -49,7 +49,7 @@ export function statisticsPanel(ui) {
         ['Voxels', (info) => countText(info.voxels)],
         ['Nodes of the DAG', (info) => countText(nodes(info.dagNodesPerLevel))],
         ['Bits per voxel', (info) => number(info.fileBytes * 8 / info.voxels)],
-        ['Attributes', (info) => [info.hasColors && 'colours', info.hasNormals && 'normals'].filter(Boolean).join(', ') || 'none'],
+        ['Attributes', (info) => [info.hasColors && 'colours', info.hasNormals && 'normals', ...info.channels.map(({ name }) => name)].filter(Boolean).join(', ') || 'none'],
       ])),
       group('Nodes per level', bars, h('p', { class: 'hint' }, 'The root is on the left. The heights are logarithms of the numbers.')),
       group('Loaded', table([

@@ -1,9 +1,10 @@
 /** The panel "View": how one moves, what is shown and how finely. */
 import { addScaled, cross, length, sub } from '../math.js';
 import { compassOf } from '../hands/pose.js';
-import { button, choice, group, refreshAll, segments, slider, toggle } from './controls.js';
+import { button, choice, group, refreshAll, segments, slider, textField, toggle, typedNumber } from './controls.js';
 import { shownCubes } from '../settings.js';
 import { h } from './dom.js';
+import { valueText } from './numbers.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui
@@ -61,6 +62,20 @@ export function viewPanel(ui) {
     text: (value) => (value >= levels() ? 'all' : `${value} (${(2 ** value).toLocaleString('en')}³)`),
   });
   const colors = toggle({ label: 'Colours', get: (s) => s.colors, set: (on) => viewer.set({ colors: on }, 'ui') });
+  const channel = choice({
+    label: 'Colour by', get: (s) => s.channel.name,
+    options: () => ['', ...(viewer.info?.channels ?? []).map(({ name }) => name)].map((name) => [name, name || 'Colours of the file']),
+    set: (name) => viewer.set({ channel: { name, range: null }, ...(name && { show: 'light' }) }, 'ui'),
+  });
+  const range = textField({
+    label: 'Range', most: 60, event: 'change', hint: 'The values of the first and the last colour; empty: those of the channel', get: () => viewer.channel()?.range.map(valueText).join(' to ') ?? '',
+    set: (typed) => {
+      const [least, most] = typed.split('to').map((part) => typedNumber(part, new Map()) ?? NaN);
+      if (typed && !(least < most)) ui.toast('Type two values, such as 0 to 100', true);
+      else viewer.set({ channel: { range: typed ? [least, most] : null } }, 'ui');
+      ui.refresh();
+    },
+  });
   const normals = toggle({ label: 'Normals of the file', hint: 'Off: the page computes them from the voxels', get: (s) => s.normals, set: (on) => viewer.set({ normals: on }, 'ui') });
   const lod = slider({
     label: 'Level of detail', min: 0, max: 8, step: 0.25, get: (s) => s.lod, set: (value) => viewer.set({ lod: value }, 'ui'),
@@ -83,19 +98,21 @@ export function viewPanel(ui) {
     set: (name) => { if (AXES[name]) change(withUp(viewer.camera(), AXES[name])); },
   });
   const lock = button('Look around with the mouse', () => hands.lockPointer(), { title: 'Hides the pointer until Escape (key L)' });
-  const refresh = refreshAll([mode, show, level, colors, normals, lod, cubes, fov, up]);
+  const refresh = refreshAll([mode, show, channel, range, level, colors, normals, lod, cubes, fov, up]);
   return {
     element: h('div', {},
       group('', mode.element, lock),
       group('Views', h('div', { class: 'grid' }, ...SIDES.map(([name, label], i) =>
         button(label, () => hands.view(name), { title: `${label} (key ${i + 1})` })),
       button('Frame', () => hands.frame(), { title: 'Show the whole scene (key F)' })), fov.element, up.element),
-      group('Picture', show.element, meaning, level.element, colors.element, normals.element, lod.element, cubes.element),
+      group('Picture', show.element, meaning, channel.element, range.element, level.element, colors.element, normals.element, lod.element, cubes.element),
       group('', button('Reset all settings', () => ui.reset()))),
     refresh(/** @type {Settings} */ settings) {
       const { info } = viewer;
       level.limits(0, levels(), 1);
-      colors.element.hidden = !info?.hasColors;
+      channel.element.hidden = !info?.channels.length;
+      range.element.hidden = viewer.channel() === null;
+      colors.element.hidden = !info?.hasColors || settings.channel.name !== '';
       normals.element.hidden = !info?.hasNormals;
       meaning.textContent = MEANINGS[settings.show] ?? '';
       meaning.hidden = settings.show === 'light';

@@ -27,11 +27,20 @@ class ChannelFields {
   static std::size_t size_of(ChannelKind kind) {
     return with_kind(kind, [](auto zero) { return sizeof zero; });
   }
-  /// Returns the name of the field: that of the channel, after "channel_" if it is one of `taken`.
   std::string name(std::size_t i, std::span<const char* const> taken) const {
-    const std::string name(look_.channels()[i].name());
+    return field_name(look_.channels()[i], taken);
+  }
+  /// Returns the name of a field: that of the channel, after "channel_" if it is one of `taken`.
+  static std::string field_name(const ChannelView& channel, std::span<const char* const> taken) {
+    const std::string name(channel.name());
     const bool is_taken = std::find(taken.begin(), taken.end(), name) != taken.end();
     return is_taken ? "channel_" + name : name;
+  }
+  /// Returns the field of a structured type of NumPy: ", ('heat', '<f4')".
+  static std::string npy_field(const ChannelView& channel, std::span<const char* const> taken) {
+    constexpr const char* kTypes[] = {"|u1", "<u2", "<i2", "<i4", "<f4"};
+    return ", ('" + field_name(channel, taken) + "', '" +
+           kTypes[static_cast<std::size_t>(channel.kind)] + "')";
   }
   /// Returns the bytes of the fields of a voxel, valid until the next call.
   std::span<const std::byte> row(Vec3i voxel, int level) {

@@ -29,14 +29,9 @@ struct CoordinateRows {
     if (look.has_normals()) add(", ('normal', '<f4', (3,))", sizeof(Vec3f));
     if (look.has_colors()) add(", ('color', '|u1', (3,))", sizeof(Value8));
     if (look.has_materials()) add(", ('material', '<u2')", sizeof(std::uint16_t));
-    for (std::size_t i = 0; i < channels.count(); ++i) {
-      constexpr const char* kTaken[] = {"voxel", "normal", "color", "material"};
-      constexpr const char* kTypes[] = {"|u1", "<u2", "<i2", "<i4", "<f4"};
-      const ChannelKind kind = channels.kind(i);
-      add(", ('" + channels.name(i, kTaken) + "', '" + kTypes[static_cast<std::size_t>(kind)] +
-              "')",
-          ChannelFields::size_of(kind));
-    }
+    constexpr const char* kTaken[] = {"voxel", "normal", "color", "material"};
+    for (const ChannelView& channel : look.channels())
+      add(ChannelFields::npy_field(channel, kTaken), ChannelFields::size_of(channel.kind));
     dtype += "]";
     layout.dtype = dtype;
     shape = {};

@@ -66,6 +66,7 @@ class Reader {
           [&](const Json& value) {
             if (value != "light") ignore("show", "a picture shows the light; --pass writes others");
           }},
+         {"channel", [&](const Json& value) { read_channel(value); }},
          {"section", [&](const Json& value) { read_section(value); }},
          {"mode",
           [&](const Json& value) {
@@ -260,6 +261,19 @@ class Reader {
                     options.occlusion_cone =
                         number(value, "occlusion.cone", 0, RenderLimits::kOcclusionCone);
                   }}});
+  }
+
+  void read_channel(const Json& json) {
+    each_member(
+        json, "channel",
+        {{"name", [&](const Json& value) { settings_.channel = text(value, "channel.name"); }},
+         {"range", [&](const Json& value) {
+            if (value.is_null()) return;
+            if (!value.is_array() || value.size() != 2 || !value[0].is_number() ||
+                !value[1].is_number() || !(value[0].get<double>() < value[1].get<double>()))
+              refuse("channel.range", "is not an array of two numbers, the smaller one first");
+            settings_.channel_range = {value[0].get<double>(), value[1].get<double>()};
+          }}});
   }
 
   void read_section(const Json& json) {

@@ -1,9 +1,11 @@
 #pragma once
 /// Reads the settings that the viewer saves as JSON, for `render --view`.
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "voxdag/render/render_options.hpp"
+#include "voxdag/stored/attributes/encode_channels.hpp"
 
 namespace voxdag {
 
@@ -12,7 +14,9 @@ struct ViewSettings {
   /// their defaults.
   RenderOptions options;
   bool colors = true, normals = true;  ///< Show the colours, the normals that the scene stores.
-  std::string title, licence;          ///< Of a page; UTF-8, empty if the file has none.
+  std::string channel;                 ///< Show the values of this channel as colours; empty: none.
+  std::optional<ChannelRange> channel_range;  ///< Of the first and the last colour.
+  std::string title, licence;                 ///< Of a page; UTF-8, empty if the file has none.
   /// A warning for each setting that a picture cannot show and for each unknown key, such as
   /// "\"level\" is ignored: a picture shows the finest level".
   std::vector<std::string> ignored;

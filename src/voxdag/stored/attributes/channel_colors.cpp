@@ -3,28 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <span>
 
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/attributes/dag_attributes.hpp"
 
 namespace voxdag {
 
-std::span<const Value8> color_map() {
-  static constexpr Value8 kColors[] = {{68, 1, 84},    {71, 45, 123},  {59, 82, 139},
-                                       {44, 114, 142}, {33, 145, 140}, {40, 174, 128},
-                                       {94, 201, 98},  {173, 220, 48}, {253, 231, 37}};
-  return kColors;
-}
-
 Value8 mapped_color(double place) {
-  const std::span<const Value8> colors = color_map();
-  const double at = place > 0 ? std::min(place, 1.0) * static_cast<double>(colors.size() - 1) : 0;
-  const auto first = std::min(static_cast<std::size_t>(at), colors.size() - 2);
+  constexpr std::size_t kLast = std::size(kColorMap) - 1;
+  const double at = place > 0 ? std::min(place, 1.0) * static_cast<double>(kLast) : 0;
+  const auto first = std::min(static_cast<std::size_t>(at), kLast - 1);
   const double part = at - static_cast<double>(first);
   Value8 color{};
   for (int c = 0; c < 3; ++c)
     color[c] = static_cast<std::uint8_t>(
-        std::lround(colors[first][c] + part * (colors[first + 1][c] - colors[first][c])));
+        std::lround(kColorMap[first][c] + part * (kColorMap[first + 1][c] - kColorMap[first][c])));
   return color;
 }
 

@@ -1,5 +1,5 @@
 /**
- * Reads the numbers of cells, and their colours and normals (docs/format.md, CIDX, COLR and NRML).
+ * Reads the numbers of cells, and their colours, normals and channels (docs/format.md, CIDX, COLR, NRML and CHAN).
  * Part of the worker's script: see scene_loader.js.
  */
 
@@ -52,4 +52,48 @@ const parseValues = (bytes, id, cells) => parsePages(bytes, id, cells, PAGES.cha
 function parseMaterials(bytes, cells) {
   const { precision, ...pages } = parsePages(bytes, 'MTID', cells, 65536);
   return { materials: precision, ...pages };
+}
+
+/** Reads the list of the channels (CHAN). @param {BlobSource | ServerSource} source @param {Uint8Array} head @param {Chunk} chunk */
+async function readChannelList(source, head, { offset, length }) {
+  const { headerBytes, entryBytes, most, kinds } = CHANNELS;
+  const bytes = await readPart(source, head, { offset, length: Math.min(length, headerBytes + most * entryBytes) });
+  const view = new DataView(bytes.buffer), count = length < headerBytes ? Infinity : view.getUint32(CHANNELS.channels, true);
+  if (headerBytes + count * entryBytes > bytes.length) throw brokenFile('Chunk CHAN ends inside its header.');
+  const values = readSize(view, CHANNELS.values, 'The number of values in CHAN'), list = [];
+  let at = offset + headerBytes + count * entryBytes;
+  for (let i = 0; i < count; ++i) {
+    const entry = headerBytes + i * entryBytes, bound = view.getFloat64(entry + CHANNELS.bound, true), kind = kinds[view.getUint32(entry + CHANNELS.kind, true)];
+    const name = /^([\w.-]{1,63})\0/.exec(String.fromCharCode(...bytes.subarray(entry, entry + CHANNELS.nameBytes)))?.[1];
+    if (!name || !kind || !(bound >= 0)) throw brokenFile(`Channel ${i} of CHAN has no valid name, kind and bound.`);
+    const size = 8 * readSize(view, entry + CHANNELS.words, `The size of channel ${name}`);
+    list.push({ name, kind, bound, values, offset: at, length: size });
+    at += size;
+  }
+  if (at !== offset + length) throw brokenFile(`The channels of CHAN end at byte ${at} instead of ${offset + length}.`);
+  return list;
+}
+
+/** Decodes a channel: the port of stored/attributes/channels.hpp. @param {Uint32Array} words @param {{name: string, kind: string, bound: number, values: number}} channel @param {number} cells */
+function decodeChannel(words, { name, kind, bound, values: count }, cells) {
+  const { blockValues } = CHANNELS, packed = 4 * Math.ceil(count / blockValues), isFloat = kind === 'f32';
+  if (count !== cells || packed > words.length) throw brokenFile(`Channel ${name} has ${count} values for ${cells} cells.`);
+  const values = isFloat ? new Float32Array(count) : new Int32Array(count), codes = new Int32Array(values.buffer);
+  for (let i = 0; i < count; ++i) {
+    const block = 4 * Math.floor(i / blockValues), flags = words[block + 3], width = flags & 63;
+    const bit = (i % blockValues) * width, at = packed + 2 * (words[block] + 2 ** 32 * words[block + 1]) + (bit >> 5), shift = bit & 31;
+    if (width > CHANNELS.maxWidth || at + (shift + width) / 32 > words.length) throw brokenFile(`Value ${i} of channel ${name} lies outside of its words.`);
+    let above = words[at] >>> shift;
+    if (shift + width > 32) above |= words[at + 1] << (32 - shift);
+    const number = (words[block + 2] + (width < 32 ? above & ((1 << width) - 1) : above)) | 0;
+    if (isFloat && bound > 0 && !(flags & 64)) values[i] = number * (2 * bound);
+    else codes[i] = isFloat && number < 0 ? number ^ 0x7fffffff : number;
+  }
+  let least = Infinity, most = -Infinity;
+  for (const x of values) {
+    if (!(x >= least)) least = x;
+    if (!(x <= most)) most = x;
+  }
+  if (!(most - least < Infinity)) throw brokenFile(`Channel ${name} has values that are no numbers.`);
+  return { values, range: [least, most] };
 }

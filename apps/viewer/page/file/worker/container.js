@@ -117,6 +117,7 @@ async function readSceneInfo(source, head, chunks) {
     fileBytes: source.size, isEmpty, words, leafBlocks, levelBegin,
     hasColors: (chunks.has('COLR') || chunks.has('WCOL')) && chunks.has('CIDX'),
     materials: chunks.has('MTID') && chunks.has('CIDX') ? namesIn(parsed.attributes?.material?.names) : null,
+    channels: chunks.has('CHAN') && chunks.has('CIDX') ? await readChannelList(source, head, /** @type {Chunk} */ (chunks.get('CHAN'))) : [],
     hasNormals: (chunks.has('NRML') || chunks.has('WNRM')) && chunks.has('CIDX'),
     up: ['x', 'y', 'z'].includes(parsed.up) ? parsed.up : null, unit: ['mm', 'cm', 'm', 'in', 'ft'].includes(parsed.unit) ? parsed.unit : null, home: homeIn(parsed.home), cubes: parsed.cubes === true,
     source: { name: String(parsed.source?.name ?? ''), vertices: Number(parsed.source?.vertices) || 0, triangles: Number(parsed.source?.triangles) || 0 },

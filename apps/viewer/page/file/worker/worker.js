@@ -15,6 +15,10 @@ let info;
 /** @type {Uint8Array} */
 let head;
 let bytesLoaded = 0;
+/** The number of cells with attributes. */
+let cells = 0;
+/** What was asked for is done one after the other. @type {Promise<void>} */
+let queue = Promise.resolve();
 
 /** @param {any} message @param {ArrayBufferLike[]} [transfer] */
 function send(message, transfer) {
@@ -104,14 +108,15 @@ async function loadValues(id, wireId, cells) {
   return wire.pages();
 }
 
-/** @param {{colors: boolean, normals: boolean, materials: boolean}} wanted */
+/** @param {{colors: boolean, normals: boolean, materials: boolean, channels: boolean}} wanted */
 async function loadAttributes(wanted) {
-  if (info.isEmpty || (!wanted.colors && !wanted.normals && !wanted.materials)) return;
+  if (info.isEmpty || (!wanted.colors && !wanted.normals && !wanted.materials && !wanted.channels)) return;
   const index = parseCellIndex(await readSlices(chunk('CIDX').offset, chunk('CIDX').length), info.levels);
   if (index.cells >= 2 ** 32) {
     send({ type: 'note', text: 'The colours have more than 4 G cells: the viewer cannot show them.' });
     return;
   }
+  cells = index.cells;
   const colors = wanted.colors ? await loadValues('COLR', 'WCOL', index.cells) : null;
   const normals = wanted.normals ? await loadValues('NRML', 'WNRM', index.cells) : null;
   const materials = wanted.materials ? parseMaterials(await readSlices(chunk('MTID').offset, chunk('MTID').length), index.cells) : null;
@@ -137,15 +142,20 @@ async function handle(request) {
     chunks = await readChunkTable(source, head);
     info = await readSceneInfo(source, head, chunks);
     send({ type: 'info', info, settings, scene, bytes: bytesLoaded });
-  } else if (request.type === 'load') {
-    await loadLevels(request.shown);
-    await loadAttributes(request);
+  } else {
+    if (request.type === 'load') {
+      await loadLevels(request.shown);
+      await loadAttributes(request);
+    } else if (cells > 0) {
+      const { channel } = request, decoded = decodeChannel(asWords(await readSlices(channel.offset, channel.length)), channel, cells);
+      send({ type: 'channel', name: channel.name, ...decoded }, [decoded.values.buffer]);
+    }
     send({ type: 'done', requests: source instanceof ServerSource ? source.requests : 0 });
   }
 }
 
 self.onmessage = (event) => {
-  handle(event.data).catch((error) => {
+  queue = queue.then(() => handle(event.data)).catch((error) => {
     const known = error instanceof SceneError;
     const text = error instanceof RangeError ? 'There is not enough memory for it.' : String(error?.message ?? error);
     send({ type: 'error', title: known ? error.title : 'The scene cannot be shown', text });

@@ -100,6 +100,21 @@ uint overlayAt(uint reference, ivec3 cell, int level, bool is_stored) {
   return reference;
 }
 
+// The channel that is shown, whose values lie in u_color_words: those of the first and the last colour.
+uniform int u_channel;        // 0: whole numbers, 1: floats, -1: none
+uniform int u_channel_least;  // whole numbers count from here on
+uniform vec2 u_channel_ends;  // of floats, half of both: their difference is a float
+
+// mapped_color() of stored/attributes/channel_colors.cpp.
+vec3 channelColor(highp usampler2D values, uint number) {
+  const vec3 colors[] = vec3[](CHANNEL_COLORS);
+  uint code = texelFetch(values, texel(number), 0).x;
+  float at = u_channel == 1 ? 0.5 * uintBitsToFloat(code) : int(code) < u_channel_least ? u_channel_ends.x : float(code - uint(u_channel_least));
+  at = clamp((at - u_channel_ends.x) / (u_channel_ends.y - u_channel_ends.x), 0.0, 1.0) * float(colors.length() - 1);
+  int first = min(int(at), colors.length() - 2);
+  return floor(mix(colors[first], colors[first + 1], at - float(first)) + 0.5);
+}
+
 // A place in the words of values.
 struct BitPlace {
   uint word, bit;

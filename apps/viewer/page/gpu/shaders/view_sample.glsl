@@ -50,7 +50,9 @@ ViewSample viewSample(GridRay ray, CellHit hit, vec3 from, vec3 direction, float
     uint number;
     uvec3 value;
     bool is_stored = findNumber(cell, hit.level, number);
-    if (u_color_bits >= 0 &&
+    if (u_channel >= 0) {
+      if (is_stored) color = dot(channelColor(u_color_words, number), vec3(1.0, 256.0, 65536.0));
+    } else if (u_color_bits >= 0 &&
         readLook(u_color_overlay, cell, hit.level, is_stored, number, u_color_words, u_color_pages, uint(u_color_bits), value))
       color = float(value.x | value.y << 8u | value.z << 16u);
     if (u_normal_bits >= 0 &&
