@@ -266,7 +266,7 @@ TEST(EncodePair, LeavesAreEncodedBetterThanInnerVoxels) {
   for (int round = 0; round < 200; ++round) {
     PairValues values;
     for (std::uint32_t i = 0; i < 12; ++i)
-      values.set(i, {{90, 90, 90}, random_direction(random)}, i % 6 == 0);
+      values.set(i, {.color = {90, 90, 90}, .normal = random_direction(random)}, i % 6 == 0);
     NormalBlock block;
     encode_pair_normals(values, reinterpret_cast<std::uint64_t*>(block.words));
     for (int i = 0; i < 12; ++i)
