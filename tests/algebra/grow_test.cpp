@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <random>
 
 #include "voxel_grid.hpp"
 
@@ -63,6 +64,29 @@ TEST(Grow, AVoxelOfALargeGridBecomesACube) {
   const Svdag all = dilate(brute_svdag(5, {{7, 0, 31}}).view(), 1'000'000'000, Neighbours::k26);
   EXPECT_EQ(all.leaf_blocks, std::vector<std::uint64_t>{~std::uint64_t{0}});
   EXPECT_TRUE(erode(all.view(), 1'000'000'000, Neighbours::k6).view().is_empty());
+}
+
+TEST(Grow, BoxesGrowFarInsideTheGridAndAtItsSides) {
+  constexpr int kLevels = 5;
+  std::mt19937 rng(7);
+  for (const int first : {0, 12}) {
+    std::vector<Vec3i> voxels;
+    for (int i = 0; i < 6; ++i)
+      voxels.push_back({first + int(rng() % 8), first + int(rng() % 8), first + int(rng() % 8)});
+    const Svdag dag = brute_svdag(kLevels, voxels);
+    for (const Vec3i half : {Vec3i{4, 0, 1}, {5, 7, 2}, {12, 9, 10}, {31, 1, 3}})
+      EXPECT_EQ(
+          dilate_box(dag.view(), half, {}),
+          VoxelGrid::dag_of(kLevels,
+                            [&](Vec3i v) {
+                              return std::any_of(voxels.begin(), voxels.end(), [&](Vec3i voxel) {
+                                const Vec3i away = v - voxel;
+                                return std::abs(away.x) <= half.x && std::abs(away.y) <= half.y &&
+                                       std::abs(away.z) <= half.z;
+                              });
+                            }))
+          << first << ", " << half.x << ", " << half.y << ", " << half.z;
+  }
 }
 
 }  // namespace

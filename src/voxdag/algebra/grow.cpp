@@ -1,8 +1,10 @@
 #include "voxdag/algebra/grow.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
+#include "voxdag/algebra/query/voxel_moments.hpp"
 #include "voxdag/algebra/source_dag.hpp"
 
 namespace voxdag {
@@ -13,6 +15,9 @@ namespace {
 /// A key is five nodes along the axis: the two source cells that the copy moved up has in the cell,
 /// the source's own cell, and the two that the copy moved down has. ShiftRule (shift.cpp) explains
 /// the pairs; a copy that is moved down by `step` has q = -1 and r = side - step.
+///
+/// A union is full where one of its parts is: then the key is that of a full cell, so that the
+/// insides of thick bodies cost nothing.
 class AxisRule {
  public:
   static constexpr std::size_t kWords = 5;
@@ -24,12 +29,13 @@ class AxisRule {
     assert(step > 0 && step < side);
     rest_[0] = step;
     rest_[1] = side - step;
+    if (is_union) find_full_nodes(dag);
   }
 
   Key root() const {
     Key key = empty_key<kWords>();
     key[1] = key[2] = key[3] = source_.root();
-    return simplified(key);
+    return simplified(0, key);
   }
 
   void children(int level, const Key& key, Key (&keys)[8]) const {
@@ -40,18 +46,17 @@ class AxisRule {
       out[2] = source_.child(level, key[2], child);
       for (int copy = 0; copy < 2; ++copy) {
         const int b = static_cast<int>(rest_[copy] >> below & 1);
-        const bool is_aligned = (rest_[copy] & ((1u << below) - 1)) == 0;
         for (int larger = 0; larger < 2; ++larger) {
           const int half = 1 + k - b + larger;
           const std::size_t slot = static_cast<std::size_t>(3 * copy);
           out[slot + static_cast<std::size_t>(larger)] =
-              larger == 0 && is_aligned
+              larger == 0 && is_aligned(copy, level + 1)
                   ? kNoCell
                   : source_.child(level, key[slot + static_cast<std::size_t>(half >> 1)],
                                   across | (half & 1) << axis_);
         }
       }
-      out = simplified(out);
+      out = simplified(level + 1, out);
     }
   }
 
@@ -63,12 +68,48 @@ class AxisRule {
   }
 
  private:
-  /// An intersection is empty if one of its parts is.
-  Key simplified(const Key& key) const {
-    const bool is_empty =
-        !is_union_ && (key[2] == kNoCell || (key[0] == kNoCell && key[1] == kNoCell) ||
-                       (key[3] == kNoCell && key[4] == kNoCell));
-    return is_empty ? empty_key<kWords>() : key;
+  Key simplified(int level, const Key& key) const {
+    if (!is_union_) {
+      const bool is_empty = key[2] == kNoCell || (key[0] == kNoCell && key[1] == kNoCell) ||
+                            (key[3] == kNoCell && key[4] == kNoCell);
+      return is_empty ? empty_key<kWords>() : key;
+    }
+    const std::uint32_t full = full_[static_cast<std::size_t>(level)];
+    if (full == kNoCell) return key;
+    bool is_full = key[2] == full;
+    for (int copy = 0; copy < 2; ++copy) {
+      const std::size_t slot = static_cast<std::size_t>(3 * copy);
+      is_full |= key[slot + 1] == full && (key[slot] == full || is_aligned(copy, level));
+    }
+    if (!is_full) return key;
+    Key own = empty_key<kWords>();
+    own[2] = full;
+    return own;
+  }
+  /// Returns whether the cells of a level lie upon cells of the copy.
+  bool is_aligned(int copy, int level) const {
+    return (rest_[copy] & ((1u << (levels_ - level)) - 1)) == 0;
+  }
+  /// Finds the node of each level whose voxels are all set: a DAG has at most one.
+  void find_full_nodes(const SvdagView& dag) {
+    full_.fill(kNoCell);
+    std::uint32_t below = kNoCell;
+    for (std::uint32_t i = 0; i < dag.leaf_block_count && below == kNoCell; ++i)
+      if (dag.leaf_blocks[i] == ~std::uint64_t{0}) below = i;
+    for (int level = levels_ - 2; below != kNoCell; --level) {
+      full_[static_cast<std::size_t>(level)] = below;
+      if (level == 0) break;
+      const std::uint32_t part = below;
+      below = kNoCell;
+      const std::uint64_t end = dag.level_begin[level];
+      for (std::uint64_t at = dag.level_begin[level - 1]; at < end && below == kNoCell;) {
+        const std::uint32_t* const node = dag.nodes + at;
+        if (child_mask(node) == 255 &&
+            std::all_of(node + 1, node + 9, [&](std::uint32_t child) { return child == part; }))
+          below = static_cast<std::uint32_t>(at);
+        at += static_cast<std::uint64_t>(words_of_node(node));
+      }
+    }
   }
   /// Returns the block whose lower corner is `rest` modulo 4 voxels below that of `larger`.
   std::uint64_t moved(std::uint64_t smaller, std::uint64_t larger, std::uint32_t rest) const {
@@ -92,6 +133,7 @@ class AxisRule {
   int levels_, axis_;
   bool is_union_;
   std::uint32_t rest_[2];  ///< The offsets of the copies, modulo the side of the grid.
+  std::array<std::uint32_t, kMaxLevels> full_{};  ///< For unions: the full node of each level.
 };
 
 /// Joins a grid with its six copies that are moved by one voxel. A key is a node and its neighbours
@@ -165,11 +207,15 @@ Svdag copy_of(const SvdagView& dag) {
 Svdag join_box(const SvdagView& dag, Vec3i half, bool is_union, Work work) {
   Svdag result = copy_of(dag);
   const int side = 1 << dag.levels;
+  const Box3i bounds =
+      std::max({half.x, half.y, half.z}) > 1 ? moments_of(dag, work).bounds : Box3i{};
   for (int axis = 0; axis < 3; ++axis) {
     assert(half[axis] >= 0);
     for (int reach = 0; reach < std::min(half[axis], side);) {
-      // Copies that are moved by reach + 1 voxels or less leave no gaps, even at the grid's sides.
-      const int step = std::min({reach + 1, half[axis] - reach, side - 1});
+      // Copies that are moved by 2 reach + 1 voxels leave no gaps, unless a body is cut by a side
+      // of the grid: then those that are moved by reach + 1 do.
+      const bool is_cut = is_union && (bounds.lo[axis] < reach || bounds.hi[axis] > side - reach);
+      const int step = std::min({is_cut ? reach + 1 : 2 * reach + 1, half[axis] - reach, side - 1});
       result = rewrite(AxisRule(result.view(), axis, static_cast<std::uint32_t>(step), is_union),
                        dag.levels, work);
       reach += step;
