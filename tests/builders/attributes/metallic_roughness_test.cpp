@@ -51,7 +51,6 @@ void for_each_pair(const Svdag& dag, const DagAttributes& attributes, const Use&
 }
 
 TEST(MetallicRoughness, EveryCellHasTheMeanOfTheSurfaceInIt) {
-  constexpr int kLevels = 5;
   std::mt19937 rng(11);
   const auto unit = [&] { return static_cast<float>(rng() >> 8) / 16777216.0f; };
   Mesh mesh;
@@ -68,9 +67,9 @@ TEST(MetallicRoughness, EveryCellHasTheMeanOfTheSurfaceInIt) {
     appearance.materials.emplace_back().metallic_roughness = {unit(), unit()};
   }
   Grid grid;
-  grid.levels = kLevels;
+  grid.levels = 5;
   const Svdag dag = build_svdag(mesh, grid, {}).dag;
-  for (const int finest : {3, kLevels}) {
+  for (const int finest : {3, 5}) {
     const DagAttributes attributes = build_both(mesh, appearance, grid, dag, finest);
     int compared = 0;
     for_each_pair(dag, attributes, [&](Vec3d lo, Vec3d hi, double metallic, double roughness) {
