@@ -243,6 +243,10 @@ TEST_F(MaterialChannels, OneChannelMayBeStoredAlone) {
   const nlohmann::json list = channels("a.vdag");
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0].at("name"), "roughness");
+  write_text(dir_ / "a.mtl", "newmtl metal\nnewmtl dull\n");
+  EXPECT_NE(
+      build("a.vdag", {"--channel", "roughness"}).err.find("has no metallic and no roughness"),
+      std::string::npos);
   expect_failure(build("b.vdag", {"--channel", "metallic,gloss"}), 2,
                  "\"gloss\" is neither metallic nor roughness");
   expect_failure(build("b.esvo", {"--channel", "metallic"}), 2, "is for DAGs only");

@@ -12,7 +12,8 @@ TEST(ShaderConstants, EveryConstantOfAShaderIsDefined) {
   const std::string defined = std::string(find_page_file("constants.js")->bytes);
   // renderer.js and the shader parts define these themselves.
   const std::regex own(
-      "TEXEL_BITS|MOST_STEPS|INSTANCE_STEPS|CUT_ALBEDO|HAS_(LOOK|HIDDEN|PATHS)|SMOOTH_(NEAR|RADIUS)"
+      "CHANNEL_COLORS|TEXEL_BITS|MOST_STEPS|INSTANCE_STEPS|CUT_ALBEDO|HAS_(LOOK|HIDDEN|PATHS)|"
+      "SMOOTH_(NEAR|RADIUS)"
       "|"
       "(SHOW|TONE_KIND|BACKGROUND)_[A-Z]+"),
       constant("\\b[A-Z]+(_[A-Z]+)+\\b");

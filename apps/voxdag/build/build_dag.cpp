@@ -103,6 +103,11 @@ void build_dag_file(BuildArguments arguments, Session& session) {
   if (arguments.attributes.options.colors && !has_colors(source.appearance))
     print_warnings({session.subject + ": has no colours: --color stores one grey for all cells"},
                    session);
+  if ((arguments.attributes.options.metallic || arguments.attributes.options.roughness) &&
+      !has_metallic_roughness(source.appearance))
+    print_warnings({session.subject + ": has no metallic and no roughness: --channel stores 0 and "
+                                      "1 for all cells"},
+                   session);
   if (arguments.attributes.colors_if_any)
     arguments.attributes.options.colors |= has_colors(source.appearance);
   arguments.attributes.colors_if_any = false;

@@ -54,7 +54,7 @@ void render_loaded(const RenderArguments& arguments, Session& session) {
   if (!arguments.view.colors && !arguments.materials && arguments.channel.empty())
     options.look.dag.attributes.colors = {};
   if (!arguments.view.normals) options.look.dag.attributes.normals = {};
-  // Colours that stand for numbers are no colours of metals.
+  // Colours that stand for numbers do not tint metals.
   if (arguments.materials || !arguments.channel.empty()) options.reflections = false;
   if (options.with_material) options.materials = (look ? *look : file).colored_dag();
   std::optional<CpuScene> cpu_scene;

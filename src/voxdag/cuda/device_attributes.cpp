@@ -58,9 +58,11 @@ struct DeviceAttributes::Memory {
 DeviceAttributes::DeviceAttributes(const DeviceScene& scene, const DagAttributesView& attributes) {
   assert(scene.host().dag() != nullptr);
   scene.make_current();
-  require_device_memory(
-      attributes.index.bytes() + attributes.colors.bytes() + attributes.normals.bytes(),
-      kColorMemory);
+  const MetallicRoughnessView mirrors = metallic_roughness_of(attributes.channels);
+  require_device_memory(attributes.index.bytes() + attributes.colors.bytes() +
+                            attributes.normals.bytes() + 8 * mirrors.metallic.word_count +
+                            8 * mirrors.roughness.word_count,
+                        kColorMemory);
   const auto memory = std::make_shared<Memory>(scene);
   const auto stored = std::make_shared<Memory::Stored>();
   ColoredDagView& view = memory->view;
@@ -71,10 +73,10 @@ DeviceAttributes::DeviceAttributes(const DeviceScene& scene, const DagAttributes
   view.attributes.index.words = stored->sums.data();
   stored->colors = upload_pages(view.attributes.colors);
   stored->normals = upload_pages(view.attributes.normals);
-  MetallicRoughnessView& mirrors = view.metallic_roughness;
-  mirrors = metallic_roughness_of(attributes.channels);
-  stored->metallic = upload_channel(mirrors.metallic);
-  stored->roughness = upload_channel(mirrors.roughness);
+  view.attributes.channels = {};  // They stay with the caller.
+  view.metallic_roughness = mirrors;
+  stored->metallic = upload_channel(view.metallic_roughness.metallic);
+  stored->roughness = upload_channel(view.metallic_roughness.roughness);
   memory->stored = stored;
   memory_ = memory;
 }

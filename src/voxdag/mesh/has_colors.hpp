@@ -18,4 +18,14 @@ inline bool has_colors(const Appearance& appearance) {
          std::any_of(appearance.materials.begin(), appearance.materials.end(), is_colored);
 }
 
+/// Returns whether a material has a metallic or roughness other than the default, or a texture of
+/// them.
+inline bool has_metallic_roughness(const Appearance& appearance) {
+  return std::any_of(appearance.materials.begin(), appearance.materials.end(),
+                     [](const Material& material) {
+                       return material.metallic_roughness != MetallicRoughness{} ||
+                              material.metallic_map.exists() || material.roughness_map.exists();
+                     });
+}
+
 }  // namespace voxdag

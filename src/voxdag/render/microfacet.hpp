@@ -28,7 +28,7 @@ struct MicrofacetRule {
   static constexpr int kSamples = 16;  ///< Directions of the mirrored sky per view sample.
 };
 
-/// Returns whether a surface is diffuse alone: one of the default numbers.
+/// Returns whether a surface is diffuse alone: metallic 0 and roughness 1, the defaults.
 VOXDAG_HD constexpr bool is_dull(MetallicRoughness numbers) {
   return numbers.metallic <= 0 && numbers.roughness >= 1;
 }

@@ -59,7 +59,6 @@ int per_view_sample(int per_pixel, int samples_per_pixel) {
   return (per_pixel + samples_per_pixel - 1) / samples_per_pixel;
 }
 
-/// Returns sample sets for the rays of a pixel: as many for each view sample.
 /// Returns the look with what kernels read of its channels.
 LookView look_of_picture(const RenderOptions& options) {
   LookView look = options.look;
@@ -71,6 +70,7 @@ LookView look_of_picture(const RenderOptions& options) {
   return look;
 }
 
+/// Returns sample sets for the rays of a pixel: as many for each view sample.
 SampleSets make_samples(const RenderOptions& options) {
   const int view_samples = options.samples_per_pixel;
   const int light_rays = view_samples * per_view_sample(options.shadow_samples, view_samples);

@@ -18,7 +18,7 @@ struct Point2f {
   float x = 0, y = 0;
 };
 
-/// A ray of ambient occlusion around the normal (0,0,1).
+/// A ray of ambient occlusion around the normal (0,0,1), or a facet of the mirrored sky.
 struct HemisphereSample {
   Vec3f direction;  ///< Unit length; cosine-weighted.
   float reach = 0;  ///< Length of the ray, as a fraction of the longest.
@@ -69,7 +69,8 @@ VOXDAG_HD inline PixelSamples samples_of_hash(const SampleTables& tables, std::u
           {static_cast<float>(more & 0xFFFFu) * kScale, static_cast<float>(more >> 16) * kScale}};
 }
 
-/// Returns the set and rotation of a pixel for a `purpose`: 0 is occlusion, 1 + i is light i.
+/// Returns the set and rotation of a pixel for a `purpose`: 0 is occlusion, 1 + i is light i, and 1
+/// + kMaxLights the mirrored sky.
 VOXDAG_HD inline PixelSamples pixel_samples(const SampleTables& tables, int x, int y, int purpose) {
   const std::uint32_t column = hash_bits(static_cast<std::uint32_t>(x));
   const std::uint32_t row = hash_bits(column + static_cast<std::uint32_t>(y));
@@ -80,7 +81,7 @@ VOXDAG_HD inline PixelSamples pixel_samples(const SampleTables& tables, int x, i
 /// Owns the tables.
 class SampleSets {
  public:
-  /// Makes sets of `light_count` points on a light and `hemisphere_count` rays of occlusion, at
+  /// Makes sets of `light_count` points on a light and `hemisphere_count` hemisphere samples, at
   /// least 1 each.
   SampleSets(int light_count, int hemisphere_count);
 

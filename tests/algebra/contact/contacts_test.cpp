@@ -271,6 +271,19 @@ TEST(Contacts, WhatIsNoShapeIsRefusedWithItsNumber) {
   box.axes[1] = {0, 2, 0};
   EXPECT_EQ(error_of([&] { overlaps(world.scene, box); }),
             "the axes of the box do not have unit length");
+  box.axes[1] = {1, 0, 0};
+  EXPECT_EQ(error_of([&] { overlaps(world.scene, box); }),
+            "the axes of the box are not at right angles");
+}
+
+TEST(Contacts, ALongBoxWhoseAxisIsALittleShortEndsWhereItEnds) {
+  const Svdag dag = brute_svdag(4, {{6, 0, 1}});
+  Grid grid;
+  grid.levels = 4;
+  grid.voxel_size = 1;
+  OrientedBox box{{-(1e7 - 9) + 3.5, 4, 4}, {1e7, 100, 100}};
+  box.axes[0].x = 1 - 9e-7;  // It ends at x = 3.5.
+  EXPECT_FALSE(overlaps({dag.view(), grid}, box));
 }
 
 }  // namespace

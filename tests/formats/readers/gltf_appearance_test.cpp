@@ -167,5 +167,16 @@ TEST_F(ReadAppearance, AGltfMetallicRoughnessTextureThatIsMalformedIsReplacedByI
   }
 }
 
+TEST_F(ReadAppearance, AGltfFactorThatIsNoNumberMakesTheMaterialDullAndKeepsTheRest) {
+  const auto result = read_mesh_with_appearance(
+      write("a.gltf", gltf(R"("materials":[{"pbrMetallicRoughness":{"roughnessFactor":"x"},
+             "emissiveFactor":[1,1,0]}])")));
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_NE(result.warnings[0].find("roughnessFactor"), std::string::npos) << result.warnings[0];
+  EXPECT_NE(result.warnings[0].find("the material is dull"), std::string::npos);
+  EXPECT_EQ(result.appearance.materials[0].metallic_roughness, (MetallicRoughness{0, 1}));
+  EXPECT_EQ(result.appearance.materials[0].emission, (Vec3f{1, 1, 0}));
+}
+
 }  // namespace
 }  // namespace voxdag

@@ -56,6 +56,9 @@ OrientedBox box_in(const Grid& grid, const OrientedBox& shape) {
     box.axes[axis] = shape.axes[axis];
     if (!(std::fabs(length(box.axes[axis]) - 1) < 1e-6))
       throw Error("the axes of the box do not have unit length");
+    for (int other = 0; other < axis; ++other)
+      if (!(std::fabs(dot(box.axes[axis], box.axes[other])) < 1e-6))
+        throw Error("the axes of the box are not at right angles");
   }
   return box;
 }

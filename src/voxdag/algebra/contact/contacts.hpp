@@ -41,7 +41,8 @@ struct Capsule {
   static Capsule sphere(Vec3d centre, double radius) { return {centre, centre, radius}; }
 };
 
-/// A box of size 2 `half`. `axes` are the directions of its sides, of unit length.
+/// A box of size 2 `half`. `axes` are the directions of its sides, of unit length and at
+/// right angles, both within 1e-6.
 struct OrientedBox {
   Vec3d centre, half;
   Vec3d axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

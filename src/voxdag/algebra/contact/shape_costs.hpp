@@ -105,10 +105,12 @@ class BoxTouch {
   }
   bool covers(Vec3i first, std::int32_t side) const {
     const double half = 0.5 * side;
+    // Axes may be a little longer, shorter and oblique (box_in()).
+    const double slack = 1e-5 * (box_.half.x + box_.half.y + box_.half.z);
     const Vec3d apart = box_.centre - static_cast<Vec3d>(first) - Vec3d{half, half, half};
     for (int i = 0; i < 3; ++i)
       if (!(std::fabs(dot(apart, directions_[i].along)) + half * directions_[i].cube <=
-            box_.half[i]))
+            box_.half[i] - slack))
         return false;
     return true;
   }

@@ -96,6 +96,8 @@ DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagVi
   };
   encode("metallic", encoder.metallic);
   encode("roughness", encoder.roughness);
+  // The channels, and their copies in the result.
+  const MemoryReservation channel_bytes(work.memory, 2 * bytes_of(channels));
   result.channels = join_channels(result.index.cells, channels);
   return result;
 }

@@ -35,19 +35,20 @@ struct AttributeCheck {
 ///              cells without visible surface, whose values come from a cell above
 ///   normals    also cells in which the normals disagree so much that rounding may decide
 ///
-/// Rounding changes the channels of a colour, metallic and roughness by one step of 8 bits, which
-/// is an error of 1/255, and turns a normal by less than 0.1 degrees. Materials with equal areas
-/// differ by less than 0.001. `mesh` must have materials if the DAG has, or `ids` the ids that the
-/// DAG stores. `cover` is the DAG of the mesh if `colored` is that of a solid: then only cells of
-/// the surface are compared. The result does not depend on the number of threads. Throws Cancelled.
+/// Rounding changes the channels of a colour by one step of 8 bits, which is an error of 1/255, and
+/// turns a normal by less than 0.1 degrees; metallic and roughness, see kMirrorTolerance. Materials
+/// with equal areas differ by less than 0.001. `mesh` must have materials if the DAG has, or `ids`
+/// the ids that the DAG stores. `cover` is the DAG of the mesh if `colored` is that of a solid:
+/// then only cells of the surface are compared. The result does not depend on the number of
+/// threads. Throws Cancelled.
 AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const ColoredDagView& colored,
                                 const SurfaceShading& shading, std::uint64_t samples,
                                 std::uint64_t seed, Work work = {}, const TriangleIds& ids = {},
                                 const SvdagView* cover = nullptr);
 
 /// Tolerances for the errors of check_attributes(), to add to the bounds of the encoder. That of
-/// metallic and roughness, which are stored without loss, is for sharp edges in textures: rounding
-/// chooses how many taps a filter takes there (0.032 was seen, at a step from 0 to 1).
+/// metallic and roughness, which are stored without loss, is for sharp edges in textures, where
+/// rounding may change the taps of a filter (0.032 was seen, at a step from 0 to 1).
 inline constexpr double kColorTolerance = 1.5 / 255, kMirrorTolerance = 0.05,
                         kNormalTolerance = 0.1, kMaterialTolerance = 0.001;
 

@@ -157,8 +157,12 @@ DagAttributes inside_attributes(const ColoredDagView& surface, const SvdagView& 
   if (of.has_normals()) result.normals = normals.finish(), result.normal_errors = normals.errors();
   if (of.has_materials()) result.materials = materials.finish();
   std::vector<EncodedChannel> channels;
-  for (std::size_t i = 0; i < channel_codes.size(); ++i)
+  for (std::size_t i = 0; i < channel_codes.size(); ++i) {
     channels.push_back(encode_channel(spec_of(of.channels[i]), channel_codes[i], work));
+    channel_codes[i] = CountedVector<std::int32_t>(work.memory);
+  }
+  // The channels, and their copies in the result.
+  const MemoryReservation channel_bytes(work.memory, 2 * bytes_of(channels));
   result.channels = join_channels(index.cells, channels);
   return result;
 }

@@ -160,6 +160,12 @@ EncodedChannel copy_channel(const ChannelView& channel) {
   return {spec_of(channel), {channel.words, channel.words + channel.word_count}};
 }
 
+std::uint64_t bytes_of(std::span<const EncodedChannel> channels) {
+  std::uint64_t bytes = 0;
+  for (const EncodedChannel& channel : channels) bytes += channel.words.size() * 8;
+  return bytes;
+}
+
 CellChannels join_channels(std::uint64_t values, std::span<const EncodedChannel> channels) {
   if (channels.size() > kMaxChannels)
     throw Error("", "",

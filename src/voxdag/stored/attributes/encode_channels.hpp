@@ -31,6 +31,9 @@ struct EncodedChannel {
   std::vector<std::uint64_t> words;  ///< ChannelView::words.
 };
 
+/// Returns the bytes of the packed values.
+std::uint64_t bytes_of(std::span<const EncodedChannel> channels);
+
 /// Packs the values whose codes are given, by number of cell. With a bound B, a value v is stored
 /// as the float that is nearest to 2 B round(v / (2 B)), if all values of its block are then within
 /// B; else the block is stored without loss. So no value differs by more than B. The result depends

@@ -130,9 +130,11 @@ VOXDAG_HD inline StoredLook look_at(const ColoredDagView& colored, Vec3i cell, i
     look.normal = unpack_normal(normal.overlay != kStoredValue
                                     ? value_of_overlay(normal.overlay)
                                     : read_value(attributes.normals, normal.number));
-  if (!colored.metallic_roughness.is_empty())
-    if (std::uint64_t number = 0; find_number(colored, cell, level, number))
+  if (!colored.metallic_roughness.is_empty()) {
+    std::uint64_t number = color.number;
+    if (colored.overlays.is_empty() ? color.is_stored : find_number(colored, cell, level, number))
       look.metallic_roughness = colored.metallic_roughness.read(number);
+  }
   return look;
 }
 

@@ -177,7 +177,6 @@ class MaterialReader {
     const GltfValue normal = value["normalTexture"];
     attempt([&] { material.normal_map = use(normal, value); }, "the normal texture is ignored");
     material.normal_scale = static_cast<float>(normal["scale"].number(1));
-    read_metallic_roughness(value, material);
     const std::vector<double> emissive = value["emissiveFactor"].numbers(3);
     const double strength =
         value["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"].number(1);
@@ -188,15 +187,15 @@ class MaterialReader {
               "the material does not emit");
     if (value["emissiveTexture"].exists() && !material.emission_map.exists())
       material.emission = {};
+    material.metallic_roughness = {};
+    attempt([&] { read_metallic_roughness(value, material); }, "the material is dull");
   }
 
   /// Materials of KHR_materials_pbrSpecularGlossiness alone have no such values: they are dull.
   void read_metallic_roughness(const GltfValue& value, Material& material) {
     const GltfValue pbr = value["pbrMetallicRoughness"];
-    if (!pbr.exists() && value["extensions"]["KHR_materials_pbrSpecularGlossiness"].exists()) {
-      material.metallic_roughness = {};
+    if (!pbr.exists() && value["extensions"]["KHR_materials_pbrSpecularGlossiness"].exists())
       return;
-    }
     const auto factor = [&](const char* name) {
       return static_cast<float>(std::clamp(pbr[name].number(1), 0.0, 1.0));
     };
