@@ -77,6 +77,8 @@ std::string render_poster(const PageView& view, const ShownScene& scene, Work wo
     colors = channel_colors(
         channel, settings.channel_range ? *settings.channel_range : range_of(channel), work);
     attributes.colors = colors.view();
+    // Colours that stand for numbers are no colours of metals.
+    options.reflections = false;
   }
   if (!settings.normals) attributes.normals = {};
   options.look = ColoredDagView{dag.dag(), attributes};
