@@ -60,7 +60,9 @@ async function readChannelList(source, head, { offset, length }) {
   const bytes = await readPart(source, head, { offset, length: Math.min(length, headerBytes + most * entryBytes) });
   const view = new DataView(bytes.buffer), count = length < headerBytes ? Infinity : view.getUint32(CHANNELS.channels, true);
   if (headerBytes + count * entryBytes > bytes.length) throw brokenFile('Chunk CHAN ends inside its header.');
-  const values = readSize(view, CHANNELS.values, 'The number of values in CHAN'), list = [];
+  const values = readSize(view, CHANNELS.values, 'The number of values in CHAN');
+  /** @type {{name: string, kind: string, bound: number, values: number, offset: number, length: number}[]} */
+  const list = [];
   let at = offset + headerBytes + count * entryBytes;
   for (let i = 0; i < count; ++i) {
     const entry = headerBytes + i * entryBytes, bound = view.getFloat64(entry + CHANNELS.bound, true), kind = kinds[view.getUint32(entry + CHANNELS.kind, true)];
