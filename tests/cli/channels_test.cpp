@@ -276,5 +276,21 @@ TEST_F(MaterialChannels, PicturesMirrorUnlessReflectionsAreOff) {
             picture("a.vdag", {"--color-by", "metallic", "--no-reflections"}));
 }
 
+TEST_F(MaterialChannels, PostersOfAChannelDoNotMirror) {
+  write_text(dir_ / "view.json", R"({"channel": {"name": "metallic"}})");
+  const auto poster = [&](const std::string& channels) {
+    EXPECT_EQ(build("a.vdag", {"--color", "--channel", channels}).status, 0);
+    const ProcessResult result = run_voxdag(
+        {"export", path("a.vdag"), "-o", path("a.html"), "--poster", "--view", path("view.json")});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::string page = read_text(path("a.html"));
+    const std::size_t begin = page.find("data:image/jpeg");
+    EXPECT_NE(begin, std::string::npos);
+    return page.substr(begin, page.find('"', begin) - begin);
+  };
+  // Mirrored light would differ, because it depends on the roughness.
+  EXPECT_EQ(poster("metallic"), poster("metallic,roughness"));
+}
+
 }  // namespace
 }  // namespace voxdag::cli

@@ -44,6 +44,7 @@ PageView read_page_view(const PageViewArguments& arguments) {
     if (!settings.unknown.empty())
       throw Error(arguments.file, "", "\"" + settings.unknown.front() + "\" is an unknown key");
     json = read_json_file(arguments.file, kSettingsLimit);
+    json["version"] = 1;  // which a file may leave out
     view.title = settings.title;
   }
   if (!arguments.title.empty()) json["title"] = view.title = arguments.title;
