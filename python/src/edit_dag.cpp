@@ -157,13 +157,10 @@ DagPointer coarser(const Dag& dag, std::int64_t resolution) {
     VdagMetadata metadata = coarser_metadata(dag.model().metadata(), coarse.view());
     const DagAttributesView fine = dag.model().attributes();
     DagAttributes kept = coarsen_attributes({dag.view(), fine}, coarse.view(), {}, work);
-    if (fine.is_empty()) metadata.attributes = {};
-    if (const int finest = fine.index.finest_level; !fine.is_empty() && finest > levels) {
-      metadata.attributes.resolution = metadata.grid.resolution();
-      // The errors of the cells that stay are not known.
-      for (auto* const values : {&metadata.attributes.colors, &metadata.attributes.normals})
-        if (*values) *values = {(*values)->bound, {}};
-    }
+    if (fine.is_empty())
+      metadata.attributes = {};
+    else
+      describe_coarser(metadata.attributes, levels);
     return std::make_shared<Dag>(
         DagModel(std::move(coarse), std::move(kept), std::move(metadata), work));
   });
@@ -222,8 +219,8 @@ axis: 'x', 'y' or 'z'. turns: quarter turns; one about z takes x to y.)")
            R"(Joins voxels to larger ones, at the same place in the world.
 
 resolution: voxels per side of the new grid, a power of two. A voxel of it is set if its place has
-voxels, and has the colour, normal, material and channels that the DAG stores for that place: of colours,
-normals and channels the mean of the voxels, of materials the most frequent one.)")
+voxels, and has the values that the DAG stores for that place: the mean of the voxels' colours, normals
+and channels, within the bounds of the DAG's encoding, and the most frequent material.)")
       .def("components", &component_table, py::kw_only(), py::arg("neighbours") = 26,
            R"(Counts connected components, the largest first. Returns (K, 2) uint64.
 

@@ -34,6 +34,30 @@ def test_edits_keep_colors():
         check(dag | voxdag.from_coords(coords, resolution=16), lambda v: v)
 
 
+def linear(srgb):
+    srgb = np.asarray(srgb) / 255
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+
+
+def test_coarser_voxels_have_the_mean_color_and_the_most_frequent_label():
+    rng = np.random.default_rng(11)
+    coords = np.unique(rng.integers(0, 32, (6000, 3)), axis=0)
+    cells, of = np.unique(coords // 2, axis=0, return_inverse=True)
+    of = of.ravel()
+    colors, labels = rng.integers(0, 256, coords.shape, np.uint8), rng.integers(0, 9, len(coords))
+    coarse = voxdag.from_coords(coords, resolution=32, colors=colors, labels=labels).coarsen(16)
+    sums, counts = np.zeros(cells.shape), np.zeros((len(cells), 9))
+    np.add.at(sums, of, linear(colors))
+    np.add.at(counts, (of, labels), 1)
+    means = sums / np.bincount(of)[:, None]
+    means = 255 * np.where(means <= 0.0031308, 12.92 * means, 1.055 * means ** (1 / 2.4) - 0.055)
+    # Colours are stored within a bound: no channel differs by more than 5 %.
+    errors = np.abs(coarse.colors(cells) - means)
+    assert errors.max() <= 0.05 * 255 + 0.5 and errors.mean() < 1
+    found = coarse.labels(cells)
+    assert (counts[np.arange(len(cells)), found] == counts.max(axis=1)).all()
+
+
 def test_new_voxels_take_the_nearest_or_a_given_color():
     coords = np.array([[2, 2, 2], [12, 12, 12]])
     dag = voxdag.from_coords(coords, resolution=16, colors=np.array([[255, 0, 0], [0, 0, 255]], np.uint8))

@@ -28,8 +28,8 @@ function hills() {
 describeInBrowsers('channels', (_, browser) => {
   const file = hills();
   /** Opens a page and waits for its scene. @param {string} url */
-  const load = async (url) => {
-    const page = await open(browser(), url, { width: 800, height: 240 });
+  const load = async (url, width = 800, height = 240) => {
+    const page = await open(browser(), url, { width, height });
     await page.waitForFunction('window.voxdag.viewer.arrival?.hasEnded');
     return page;
   };
@@ -85,9 +85,22 @@ describeInBrowsers('channels', (_, browser) => {
     };
     await type('9 to 3');
     assert.deepEqual(await legend(), ['count', String(count.least), '', String(count.greatest)]);
+    await type('0 to 10 to 20');
+    await type('0 to 1e39');
+    assert.deepEqual(await legend(), ['count', String(count.least), '', String(count.greatest)]);
+    // A range that is being typed stays when the page shows its settings.
+    const field = await page.evaluateHandle(() => Array.from(document.querySelectorAll('.row.text')).find((e) => e.textContent === 'Range')?.lastChild);
+    const input = /** @type {import('puppeteer-core').ElementHandle<HTMLInputElement>} */ (field);
+    await input.click({ count: 3 });
+    await input.type('0 to 9');
+    await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.refresh());
+    await input.type('9.5');
+    await page.keyboard.press('Enter');
+    assert.deepEqual(await legend(), ['count', '0', '', '99.5']);
     await type('0 to 99.5');
-    assert.deepEqual(await legend(), ['count', String(count.least), '', '99.5']);
+    assert.deepEqual(await legend(), ['count', '0', '', '99.5']);
     await page.waitForFunction('location.hash.includes("channel=count&range=0,99.5")');
+    assert.equal(await input.evaluate((e) => e.value), '0 to 99.5');
 
     // The value at the pointer is the one of the voxel.
     const seen = await page.evaluate(async () => {
@@ -111,6 +124,7 @@ describeInBrowsers('channels', (_, browser) => {
     await choose('');
     assert.equal(await legend(), null);
     assertNoComplaints(page);
+    await page.waitForFunction('!location.hash.includes("channel")');
     await page.goto(`${pathToFileURL(single).href}#ao=0&shadows=off&channel=heat&range=-10,20`);
     await page.reload();
     await page.waitForFunction('window.voxdag?.viewer?.channel()');
@@ -119,5 +133,58 @@ describeInBrowsers('channels', (_, browser) => {
     await page.reload();
     await page.waitForFunction('document.querySelector(".toast:not([hidden])")?.textContent.includes("no channel cold")');
     await page.close();
+  });
+
+  it('load without another "loaded", give their memory back, and may fail', async () => {
+    const server = await view(file), page = await load(server.url, 96, 54);
+    const found = await page.evaluate(async () => {
+      const { viewer } = /** @type {any} */ (window).voxdag, bytes = new Uint8Array(await (await viewer.scene()).arrayBuffer());
+      // The first block of the channel has numbers of 63 bits.
+      bytes[viewer.info.channels.find((/** @type {any} */ one) => one.name === 'count').offset + 12] = 63;
+      let loaded = 0, errors = 0, tells = () => {};
+      viewer.on('loaded', () => { ++loaded; tells(); });
+      viewer.on('error', () => { ++errors; tells(); });
+      const event = (/** @type {() => any} */ act) => new Promise((resolve) => { tells = () => resolve(null); act(); });
+      await event(() => viewer.open(new File([bytes], 'broken.vdag')));
+      const ends = [], memory = () => [viewer.statistics().bytesLoaded, viewer.statistics().gpuBytes];
+      const choose = (/** @type {string} */ name) => viewer.set({ channel: { name }, occlusion: { samples: 0 }, shadows: false });
+      choose('');
+      const before = memory();
+      for (const name of ['count', 'heat', 'count', '', 'count', 'time']) {
+        if (name === 'count') await event(() => choose(name));
+        else choose(name);
+        await viewer.capture({ width: 8, height: 8, samples: 1 });
+        ends.push(viewer.channel()?.name ?? null);
+      }
+      choose('');
+      await viewer.whenStill();
+      return { loaded, errors, ends, before, after: memory() };
+    });
+    assert.deepEqual(found, { loaded: 1, errors: 3, ends: [null, 'heat', null, null, null, 'time'], before: found.before, after: found.before });
+    await page.close();
+    await server.close();
+  });
+
+  it('have one scale in two scenes that are compared', async () => {
+    const coarse = path.join(folder, 'coarse.vdag');
+    voxdag('coarsen', file, '--by', '1', '-o', coarse, '-q');
+    const server = await view(file), page = await load(server.url);
+    const input = /** @type {import('puppeteer-core').ElementHandle<HTMLInputElement>} */ (await page.evaluateHandle(() => {
+      const { viewer, ui } = /** @type {any} */ (window).voxdag;
+      viewer.set({ channel: { name: 'near' }, occlusion: { samples: 0 }, shadows: false });
+      ui.open('compare');
+      return document.querySelector('input[accept=".vdag"][aria-label^="File of the second"]');
+    }));
+    await input.uploadFile(coarse);
+    await page.waitForFunction('window.voxdag.ui.second()?.channel() && window.voxdag.viewer.channel()');
+    const [first, second] = await page.evaluate(() => {
+      const { viewer, ui } = /** @type {any} */ (window).voxdag;
+      return [viewer, ui.second()].map((each) => each.channel());
+    });
+    assert.deepEqual(second.range, first.range);
+    assert.notDeepEqual(second.values, first.values);
+    assertNoComplaints(page);
+    await page.close();
+    await server.close();
   });
 });

@@ -48,6 +48,24 @@ describeInBrowsers('layout', (name, browser) => {
     }
   });
 
+  it('opens every panel without an error, and the picture goes on', async () => {
+    const page = await load(1280, 800);
+    const names = await page.$$eval('.toolbar button:not([hidden])', (buttons) => buttons.map((button) => button.getAttribute('aria-label')));
+    assert.ok(names.length >= 10);
+    for (const name of names) {
+      await page.click(`.toolbar button[aria-label="${name}"]`);
+      assert.equal(await page.$eval('#panel-title', (title) => title.textContent), name);
+      const frames = await page.evaluate(() => new Promise((resolve) => {
+        const { viewer } = /** @type {any} */ (window).voxdag;
+        viewer.on('frame', () => resolve(true));
+        viewer.set({ camera: { ...viewer.camera(), fov: viewer.camera().fov + 0.1 } });
+      }));
+      assert.ok(frames);
+    }
+    assertNoComplaints(page);
+    await page.close();
+  });
+
   it('shows every icon of the toolbar, large enough for a finger, on phones', async () => {
     for (const [width, height] of [[844, 390], [390, 844], [360, 640]]) {
       const page = await load(width, height);

@@ -177,6 +177,23 @@ TEST_F(Channels, TraceAndQueryWriteTheirValues) {
   expect_values(found[1], 0, NAN);
 }
 
+TEST_F(Channels, FieldsHaveDistinctNames) {
+  ASSERT_EQ(import({"--channel", "intensity:as t", "--channel", "scalar_T:as channel_t"}).status,
+            0);
+  write_text(dir_ / "rays.npy", rays_npy({{-5, 0, 0, 0, 1, 0, 0, 100}}));
+  ASSERT_EQ(run_voxdag({"trace", path("p.vdag"), "--rays", path("rays.npy"), "-o", path("out.npy")})
+                .status,
+            0);
+  EXPECT_NE(read_text(path("out.npy")).find("('channel_channel_t', '|u1'), ('channel_t', '<f4')"),
+            std::string::npos);
+  ASSERT_EQ(import({"--channel", "intensity:as x", "--channel", "scalar_T:as channel_x"}).status,
+            0);
+  ASSERT_EQ(run_voxdag({"export", path("p.vdag"), "-o", path("out.ply")}).status, 0);
+  EXPECT_NE(read_text(path("out.ply"))
+                .find("property uchar channel_channel_x\nproperty float channel_x\n"),
+            std::string::npos);
+}
+
 TEST_F(Channels, WhatIsWrongIsSaid) {
   expect_failure(import({"--channel", "heat"}), 1, "has no field 'heat'");
   expect_failure(import({"--channel", "intensity,bound=-1"}), 2, "--channel");
@@ -261,6 +278,22 @@ TEST_F(MaterialChannels, PicturesMirrorUnlessReflectionsAreOff) {
   EXPECT_EQ(picture("b.vdag", {"--no-reflections"}), diffuse);
   EXPECT_EQ(picture("a.vdag", {"--color-by", "metallic"}),
             picture("a.vdag", {"--color-by", "metallic", "--no-reflections"}));
+}
+
+TEST_F(MaterialChannels, PostersOfAChannelDoNotMirror) {
+  write_text(dir_ / "view.json", R"({"channel": {"name": "metallic"}})");
+  const auto poster = [&](const std::string& channels) {
+    EXPECT_EQ(build("a.vdag", {"--color", "--channel", channels}).status, 0);
+    const ProcessResult result = run_voxdag(
+        {"export", path("a.vdag"), "-o", path("a.html"), "--poster", "--view", path("view.json")});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::string page = read_text(path("a.html"));
+    const std::size_t begin = page.find("data:image/jpeg");
+    EXPECT_NE(begin, std::string::npos);
+    return page.substr(begin, page.find('"', begin) - begin);
+  };
+  // Mirrored light would differ, because it depends on the roughness.
+  EXPECT_EQ(poster("metallic"), poster("metallic,roughness"));
 }
 
 }  // namespace

@@ -175,5 +175,15 @@ TEST_F(RenderView, SettingsThatAPictureCannotShowAreNamed) {
   EXPECT_NE(result.err.find("\"hidden\" is ignored"), std::string::npos) << result.err;
 }
 
+TEST_F(RenderView, AChannelBesideAMeshIsNamed) {
+  write_text(path("view.json"), R"({"channel": {"name": "heat"}})");
+  const ProcessResult result =
+      run_voxdag({"render", path("in.vdag"), "-o", path("a.png"), "--size", "8x8", "-q", "--view",
+                  path("view.json"), "--mesh", path("sponge.ply")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("\"channel\" is ignored: --mesh shows no channels"), std::string::npos)
+      << result.err;
+}
+
 }  // namespace
 }  // namespace voxdag::cli

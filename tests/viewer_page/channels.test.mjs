@@ -9,9 +9,11 @@ import { channelGradient } from '../../apps/viewer/page/ui/legend.js';
 import { valueText } from '../../apps/viewer/page/ui/numbers.js';
 import { randomNumbers } from './random.mjs';
 
-/** A function of the worker, whose script has no exports. */
-const decodeChannel = new Function('CHANNELS', 'brokenFile', `${fs.readFileSync(new URL('../../apps/viewer/page/file/worker/attributes.js', import.meta.url), 'utf8')}
-  return decodeChannel;`)({ blockValues: 256, maxWidth: 32 }, (text) => new Error(text));
+/** Functions of the worker, whose script has no exports. */
+const { decodeChannel, readChannelList } = new Function('CHANNELS', 'brokenFile', 'readPart', 'readSize', `${fs.readFileSync(new URL('../../apps/viewer/page/file/worker/attributes.js', import.meta.url), 'utf8')}
+  return { decodeChannel, readChannelList };`)(
+  { most: 16, headerBytes: 64, channels: 0, values: 8, entryBytes: 128, nameBytes: 64, kind: 64, bound: 72, words: 80, kinds: ['u8'], blockValues: 256, maxWidth: 32 },
+  (text) => new Error(text), (_, bytes) => bytes, (view, at) => view.getUint32(at, true));
 
 /** Packs numbers as docs/format.md says of CHAN, in blocks of 256. `exact` says which blocks hold codes. */
 function packed(numbers, exact = () => false) {
@@ -57,7 +59,26 @@ test('words that lead outside, and floats that are no numbers, are refused', () 
   for (let length = 0; length < words.length - 1; ++length) assert.throws(() => decodeChannel(words.subarray(0, length), of, 300), /channel a/i);
   assert.throws(() => decodeChannel(words, of, 301), /has 300 values for 301 cells/);
   for (const [at, value] of [[0, 1000], [1, 1], [3, 33]]) assert.throws(() => decodeChannel(words.with(at, value), of, 300), /lies outside/);
-  assert.throws(() => decodeChannel(packed([0, 0x7fc00000]), { ...of, kind: 'f32', values: 2 }, 2), /no numbers/);
+  for (const codes of [[0x7fc00000, 0, 1], [0, 0x7fc00000], [0x7f800000, 0]])
+    assert.throws(() => decodeChannel(packed(codes), { ...of, kind: 'f32', values: codes.length }, codes.length), /not finite numbers/);
+});
+
+test('whole numbers outside of their kind are refused', () => {
+  for (const [kind, least, most] of [['u8', 0, 255], ['u16', 0, 65535], ['i16', -32768, 32767]]) {
+    const decode = (...numbers) => decodeChannel(packed(numbers), { name: 'a', kind, bound: 0, values: 2 }, 2);
+    assert.deepEqual(decode(least, most).range, [least, most]);
+    assert.throws(() => decode(least - 1, most), /outside of its kind/);
+    assert.throws(() => decode(least, most + 1), /outside of its kind/);
+  }
+});
+
+test('a list with a name that is there already is refused', async () => {
+  const bytes = new Uint8Array(64 + 2 * 128), chunk = { offset: 0, length: bytes.length };
+  bytes[0] = 2;
+  for (const [i, name] of ['a', 'b'].entries()) bytes[64 + 128 * i] = name.charCodeAt(0);
+  assert.deepEqual((await readChannelList(null, bytes, chunk)).map(({ name }) => name), ['a', 'b']);
+  bytes[64 + 128] = bytes[64];
+  await assert.rejects(readChannelList(null, bytes, chunk), /two channels a/);
 });
 
 test('whole numbers are compared with the least one before they become floats', () => {
@@ -66,7 +87,12 @@ test('whole numbers are compared with the least one before they become floats', 
   assert.deepEqual(channelUniforms(time, [1600000050.5, 1600000100]), { ints: { u_channel: 0, u_channel_least: 1600000050 }, floats: { u_channel_ends: [0.5, 50] } });
   assert.deepEqual(channelUniforms(heat, null), { ints: { u_channel: 1, u_channel_least: 0 }, floats: { u_channel_ends: [-10.25, 15] } });
   // A channel of one value has the first colour.
-  assert.deepEqual(channelUniforms({ values: new Int32Array(), range: [7, 7] }, null).floats.u_channel_ends, [0, 1]);
+  assert.deepEqual(channelUniforms({ values: new Int32Array(), range: [7, 7] }, null).floats.u_channel_ends, [0, 1e-30]);
+  // Ends that are one float have a step between them.
+  for (const ends of [[5, 5.0000001], [0, 1e-60], [-3e38, -3e38 + 1e20]]) {
+    const [low, high] = channelUniforms(heat, ends).floats.u_channel_ends.map(Math.fround);
+    assert.ok(low < high && high <= low + 4e-7 * Math.abs(low) + 1e-29, String(ends));
+  }
   // Half the range of all floats is a float.
   const most = 3.4028234663852886e38, [low, high] = channelUniforms(heat, [-most, most]).floats.u_channel_ends;
   assert.equal(high - low, most);
@@ -74,7 +100,14 @@ test('whole numbers are compared with the least one before they become floats', 
 
 test('values are written with the digits that tell them from other floats', () => {
   assert.deepEqual([0.1, 1 / 3, 3.5, -2.25, 1e-7].map((x) => valueText(Math.fround(x))), ['0.1', '0.33333334', '3.5', '\u22122.25', '1e-7']);
-  assert.deepEqual([0, -4, 16777217, 2147483647, 1e30].map(valueText), ['0', '\u22124', '16777217', '2147483647', '1e+30']);
+  assert.deepEqual([0, -4, 16777217, 2147483647, 1e30, Math.fround(1e30)].map(valueText), ['0', '\u22124', '16777217', '2147483647', '1e+30', '1e+30']);
+  // Ends of a range are no floats.
+  assert.deepEqual([1600000050.5, 0.1, 99.5].map(valueText), ['1600000050.5', '0.1', '99.5']);
+  const random = randomNumbers(5);
+  for (let i = 0; i < 1000; ++i) {
+    const value = Math.fround((random() - 0.5) * 10 ** Math.floor(random() * 60 - 30));
+    assert.equal(Math.fround(Number(valueText(value).replace('\u2212', '-'))), value);
+  }
 });
 
 test('the channel and its range are settings, and parts of a link', () => {
@@ -85,7 +118,7 @@ test('the channel and its range are settings, and parts of a link', () => {
   assert.deepEqual(settingsFromHash('#channel=&range=none', settings).settings, DEFAULTS);
   assert.equal(settingsFromHash('#channel=none').settings.channel.name, 'none');
   assert.deepEqual(mergeSettings(settings, { channel: { range: null } }).channel, { name: 'heat', range: null });
-  for (const [channel, reason] of [[{ name: null }, /"channel.name" is not a text/], [{ range: [2, 2] }, /the smaller one first/], [{ range: [1] }, /two numbers/]])
+  for (const [channel, reason] of [[{ name: null }, /"channel.name" is not a text/], [{ range: [2, 2] }, /the smaller one first/], [{ range: [1] }, /two numbers/], [{ range: [-1e308, 1] }, /range of floats/]])
     assert.throws(() => mergeSettings(DEFAULTS, { channel }), reason);
   assert.equal(settingsFromHash('#range=3,1').problems.length, 1);
 });

@@ -48,8 +48,11 @@ std::string read(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Returns a shader without comments, a fifth of its compressed size. Lines keep their numbers.
+/// Returns a shader without its comments, which are a fifth of its compressed size. Lines keep
+/// their numbers. Throws for a comment that begins with "/*".
 std::string without_comments(const std::string& shader) {
+  if (shader.find("/*") != std::string::npos)
+    throw std::runtime_error("a shader has \"/*\": only comments that begin with // are removed");
   std::string text;
   for (std::size_t at = 0; at < shader.size();) {
     const std::size_t end = std::min(shader.find('\n', at), shader.size());

@@ -40,7 +40,7 @@ export class SceneArrival {
     this.guessed = [0, 1, 0];
     /** Whether the loader has sent all that it can: it has finished or failed. */
     this.hasEnded = false;
-    /** What the loader was asked for and has not done. */
+    /** How many requests the loader has not done. */
     this.asked = 0;
     /** The channel that was asked for last. */
     this.channel = '';
@@ -87,15 +87,16 @@ export class SceneArrival {
         this.report('begin', message.settings);
         return this.#begin(message.info, message.bytes);
       case 'progress':
+        if (message.channel) return this.report('progress', { bytes: message.bytes, total: message.channel.length, channel: message.channel.name });
         this.bytesLoaded = message.bytes;
         return this.report('progress', { bytes: message.bytes, total: this.info?.fileBytes ?? 0 });
       case 'note':
         return this.report('note', message.text);
       case 'done':
         if (--this.asked <= 0) this.end();
-        return this.report('loaded', { requests: message.requests });
+        return message.isScene ? this.report('loaded', { requests: message.requests }) : undefined;
       case 'error':
-        this.end();
+        if (--this.asked <= 0) this.end();
         return this.report('error', { title: message.title, text: message.text, kind: message.title === 'No connection' ? 'network' : 'file' });
       default:
         return this.#add(message);
@@ -107,7 +108,7 @@ export class SceneArrival {
     this.memory = new SceneMemory(info, finestLevelThatFits(this.gl, info));
     this.textures = this.#newTextures(this.memory);
     const { finest, isWhole } = this.memory;
-    this.info = sceneInfo(info, this.guessed, this.aspect());
+    this.info = sceneInfo(info, this.guessed, this.aspect(), isWhole);
     this.bytesLoaded = bytes;
     this.report('info', this.info);
     if (info.isEmpty) this.report('note', 'This scene has no voxels.');
@@ -119,7 +120,7 @@ export class SceneArrival {
   /** Takes a level or the attributes. @param {LoaderMessage} message */
   #add(message) {
     const { info, memory, textures } = this;
-    if (info === null || memory === null || textures === null) return;
+    if (info === null || memory === null || textures === null || (message.type === 'channel' && message.name !== this.channel)) return;
     memory.add(message, textures);
     if (message.type === 'attributes') return this.report('look', {});
     if (message.type === 'channel') return this.report('channel', message.name);
@@ -129,11 +130,12 @@ export class SceneArrival {
     this.report('level', { level: memory.shown, levels: info.levels, bytes: this.bytesLoaded });
   }
 
-  /** Loads a channel of the file, once its attributes are here and unless it was asked for last. @param {string} name */
+  /** Loads a channel of the file, once its attributes are here and unless it was asked for last; without one of this name, drops the one that is here. @param {string} name */
   show(name) {
-    const channel = this.memory?.info.channels.find((one) => one.name === name);
-    if (channel === undefined || !this.memory?.attributes || name === this.channel) return;
-    this.channel = name;
+    const { memory } = this, channel = memory?.info.channels.find((one) => one.name === name);
+    if (name === this.channel || !memory?.attributes) return;
+    this.channel = channel ? name : '';
+    if (channel === undefined) return memory.setChannel(null, this.textures);
     if (channel.values > mostTexels(this.gl)) return this.report('note', `The channel ${name} is too large for the graphics card.`);
     if (this.hasEnded) this.ended = this.#newEnd();
     this.hasEnded = false;

@@ -20,12 +20,12 @@ export const boundsOf = (dag) => bounds(dag, BOUNDS_LEVEL);
  */
 export const firstView = (box, { up, home }, guessed, aspect) => homeView(box, aspect, up === null ? guessed : axisNamed(up), home);
 
-/** Returns what is known before cells have arrived: the bounds are those of the grid. @param {FileInfo} file @param {Vec3} guessed @param {number} aspect @returns {SceneInfo} */
-export function sceneInfo(file, guessed, aspect) {
+/** Returns what is known before cells have arrived: the bounds are those of the grid. @param {FileInfo} file @param {Vec3} guessed @param {number} aspect @param {boolean} isWhole @returns {SceneInfo} */
+export function sceneInfo(file, guessed, aspect, isWhole) {
   const { levels, resolution, origin, voxelSize, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, materials, channels, source, home, cubes, unit } = file;
   const side = voxelSize * resolution, box = { low: origin, high: /** @type {Vec3} */ (origin.map((x) => x + side)) };
   return {
     name: source.name, levels, resolution, origin, voxelSize, bounds: box, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, materials, channels, source,
-    view: firstView(box, file, guessed, aspect), home, cubes, unit,
+    view: firstView(box, file, guessed, aspect), home, cubes, unit, isWhole,
   };
 }

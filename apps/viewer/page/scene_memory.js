@@ -80,15 +80,19 @@ export class SceneMemory {
       textures?.setLook(message);
       return;
     } else if (message.type === 'channel') {
-      this.channel = message;
-      textures?.setChannel(message);
-      return;
+      return this.setChannel(message, textures);
     } else {
       return;
     }
     this.shown = message.shown;
     this.mostInstances = Math.max(this.mostInstances, message.mostInstances);
     if (textures && textures.nodeInstances !== null) this.uploadInstances(textures);
+  }
+
+  /** @param {import('./file/scene_loader.js').Channel | null} channel @param {SceneTextures | null} textures */
+  setChannel(channel, textures) {
+    this.channel = channel;
+    textures?.setChannel(channel);
   }
 
   /** @param {SceneTextures} textures */

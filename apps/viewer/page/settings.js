@@ -208,6 +208,8 @@ const record = (fields, defaults = {}, finish = (value) => value) => (value, key
 const whole = (fields, defaults, finish) => (value, key, _, ignored) =>
   record(fields, defaults, finish)(value, key, null, ignored);
 
+const MOST_FLOAT = 2 ** 128 - 2 ** 104;
+
 /** The field of view: below the least, pixels no longer have distinct directions. */
 const LEAST_FOV = 1e-6, MOST_FOV = 179;
 
@@ -246,9 +248,9 @@ const measure = (value, key, _, ignored) => {
   return count >= least && count <= most ? found : refuse(`${key}.points`, `has ${count} points; a measure of kind ${found.kind} has ${least}${most > least ? ' or more' : ''}`);
 };
 
-/** @type {Check} */
+/** Checks the ends of a scale, which are in the range of floats. @type {Check} */
 const range = (value, key) =>
-  Array.isArray(value) && value.length === 2 && value.every(Number.isFinite) && value[0] < value[1] ? [...value] : refuse(key, 'is not an array of two numbers, the smaller one first');
+  Array.isArray(value) && value.length === 2 && value.every((x) => typeof x === 'number' && Math.abs(x) <= MOST_FLOAT) && value[0] < value[1] ? [...value] : refuse(key, 'is not an array of two numbers in the range of floats, the smaller one first');
 
 /** @type {Check} */
 const path = (value, key, _, ignored) => {

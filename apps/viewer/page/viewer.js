@@ -192,8 +192,9 @@ class CanvasViewer extends Events {
 
   /** Loads the channel that the settings name. @param {boolean} isNew  Whether to say that there is none. */
   #showChannel(isNew) {
-    const { name } = this.settings.channel;
-    if (isNew && name && this.info?.channels.every((channel) => channel.name !== name)) this.emit('note', `This scene has no channel ${name}.`);
+    const { name } = this.settings.channel, { info } = this;
+    if (isNew && name && info && !(info.isWhole && info.channels.some((channel) => channel.name === name)))
+      this.emit('note', info.isWhole ? `This scene has no channel ${name}.` : 'Channels are not shown: this scene is too large for the graphics card.');
     this.arrival?.show(name);
   }
 

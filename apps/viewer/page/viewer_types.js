@@ -31,6 +31,7 @@
  * @property {Camera} view  The suggested view.
  * @property {(Camera & {sun?: Vec3}) | null} home  The view of the file, with a sun if it is an interior.
  * @property {import('./settings.js').Unit | null} unit  Of world coordinates, if the file says it.
+ * @property {boolean} isWhole  Whether the graphics card can hold all levels; else the page shows the upper ones, without colours and channels.
  * @property {boolean} cubes  Whether its voxels are cubes, not samples of smooth surfaces.
  *
  * @typedef {object} Statistics
@@ -65,7 +66,7 @@
  * @property {(hit: Hit) => number | null} material  Its id; null without materials.
  * @property {() => {name: string, values: [number, number], range: [number, number], colors: number[][]} | null} channel  The channel that is shown, once it has
  *   arrived: the least and the greatest of its values; those of the first and the last colour; and the colours, at equal distances.
- * @property {(hit: Hit) => number | null} channelValue  Of the channel that is shown; null without one, and for cells that edits added.
+ * @property {(hit: Hit) => number | null} channelValue  The value of the channel that is shown; null without one, and for cells that edits added.
  * @property {() => number[] | null} materialCounts  Cells of the finest level with materials, by id; null before they have arrived, and for very large scenes.
  * @property {(point: Vec3) => boolean} contains  Whether a point lies in a set voxel.
  * @property {(options?: {width?: number, height?: number, samples?: number, camera?: Camera, signal?: AbortSignal,

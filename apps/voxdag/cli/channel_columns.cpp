@@ -9,10 +9,11 @@ namespace voxdag::cli {
 
 ChannelColumns::ChannelColumns(const ColoredDagView& dag, std::span<const char* const> taken)
     : dag_(dag) {
-  for (std::size_t i = 0; i < dag.attributes.channels.count(); ++i) {
+  for (std::size_t i = 0; i < dag.attributes.channels.count(); ++i)
     channels_.push_back(dag.attributes.channels[i]);
-    dtype_ += ChannelFields::npy_field(channels_.back(), taken);
-    bytes_ += ChannelFields::size_of(channels_.back().kind);
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    dtype_ += ChannelFields::npy_field(channels_, i, taken);
+    bytes_ += ChannelFields::size_of(channels_[i].kind);
   }
 }
 

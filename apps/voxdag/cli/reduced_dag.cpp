@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-
 #include "voxdag/algebra/coarsen.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/verify_vdag.hpp"
@@ -19,16 +17,6 @@ void check_metadata(const VdagMetadata& metadata, const DagAttributesView& attri
   } catch (const Error& error) {
     throw error.in_file(path);
   }
-}
-
-/// Describes values that were encoded again within these bounds. The errors of the cells that the
-/// coarser grid keeps are not known.
-void encode_again(AttributesMetadata& attributes, const CoarsenBounds& bounds) {
-  if (attributes.colors)
-    attributes.colors = {std::min(attributes.colors->bound + bounds.color_bound, 1.0), {}};
-  if (attributes.normals)
-    attributes.normals = {std::min(attributes.normals->bound + bounds.normal_bound_degrees, 180.0),
-                          {}};
 }
 
 }  // namespace
@@ -84,9 +72,8 @@ ReducedDag::ReducedDag(const DagModel& file, const std::string& path, const DagR
   metadata_ = coarser_metadata(metadata_, dag_);
   if (attributes_.is_empty()) return;
   coarse_attributes_ = coarsen_attributes({file.view(), attributes_}, dag_, reduction.bounds, work);
-  if (attributes_.index.finest_level > levels) encode_again(metadata_.attributes, reduction.bounds);
+  describe_coarser(metadata_.attributes, levels, reduction.bounds);
   attributes_ = coarse_attributes_.view();
-  metadata_.attributes.resolution = std::int64_t{1} << attributes_.index.finest_level;
   memory_ = MemoryReservation(work.memory, coarse_attributes_.bytes());
 }
 

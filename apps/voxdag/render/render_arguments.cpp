@@ -159,13 +159,17 @@ void apply_view_file(RenderArguments& arguments, Session& session) {
     throw Error(view.file, "", "\"section\" cannot cut the triangles of --mesh: set it to null");
   view.colors = settings.colors;
   view.normals = settings.normals;
-  if (arguments.channel.empty() && !arguments.materials && !arguments.mesh.is_seen() &&
-      arguments.stream_memory == 0) {
-    arguments.channel = settings.channel;
-    arguments.channel_range = settings.channel_range;
-  }
   std::vector<std::string> warnings;
   for (const std::string& text : settings.ignored) warnings.push_back(view.file + ": " + text);
+  if (arguments.channel.empty() && !arguments.materials && !settings.channel.empty()) {
+    if (arguments.mesh.is_seen() || arguments.stream_memory != 0) {
+      warnings.push_back(view.file + ": \"channel\" is ignored: " +
+                         (arguments.mesh.is_seen() ? "--mesh" : "--memory") + " shows no channels");
+    } else {
+      arguments.channel = settings.channel;
+      arguments.channel_range = settings.channel_range;
+    }
+  }
   print_warnings(warnings, session);
 }
 

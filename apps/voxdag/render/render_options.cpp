@@ -23,6 +23,9 @@ ChannelRange parse_channel_range(const std::string& text) {
                            parse_finite(text.substr(comma + 1))};
   if (!(range.least < range.most))
     throw std::invalid_argument("the first number must be less than the second");
+  const ChannelRange floats = range_of(ChannelKind::kF32);
+  if (range.least < floats.least || range.most > floats.most)
+    throw std::invalid_argument("must be in the range of floats");
   return range;
 }
 

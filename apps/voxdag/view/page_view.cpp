@@ -44,6 +44,7 @@ PageView read_page_view(const PageViewArguments& arguments) {
     if (!settings.unknown.empty())
       throw Error(arguments.file, "", "\"" + settings.unknown.front() + "\" is an unknown key");
     json = read_json_file(arguments.file, kSettingsLimit);
+    json["version"] = 1;  // which a file may leave out
     view.title = settings.title;
   }
   if (!arguments.title.empty()) json["title"] = view.title = arguments.title;
@@ -77,6 +78,8 @@ std::string render_poster(const PageView& view, const ShownScene& scene, Work wo
     colors = channel_colors(
         channel, settings.channel_range ? *settings.channel_range : range_of(channel), work);
     attributes.colors = colors.view();
+    // Colours that stand for numbers are no colours of metals.
+    options.reflections = false;
   }
   if (!settings.normals) attributes.normals = {};
   options.look = ColoredDagView{dag.dag(), attributes};

@@ -131,4 +131,15 @@ VdagMetadata coarser_metadata(VdagMetadata metadata, const SvdagView& dag) {
   return metadata;
 }
 
+void describe_coarser(AttributesMetadata& attributes, int levels, const CoarsenBounds& bounds) {
+  if (attributes.level() <= levels) return;
+  attributes.resolution = std::int64_t{1} << levels;
+  const auto encode_again = [](std::optional<AttributesMetadata::Values>& values, double bound,
+                               double most) {
+    if (values) values = {std::min(values->bound + bound, most), {}};
+  };
+  encode_again(attributes.colors, bounds.color_bound, 1.0);
+  encode_again(attributes.normals, bounds.normal_bound_degrees, 180.0);
+}
+
 }  // namespace voxdag

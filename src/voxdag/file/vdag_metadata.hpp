@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "voxdag/file/scene_metadata.hpp"
+#include "voxdag/stored/attributes/coarsen_attributes.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag {
@@ -64,5 +65,10 @@ VdagMetadata parse_vdag_metadata(std::string_view json);
 /// Returns the metadata for the grid of fewer levels that `dag` has, whose voxels are `dag`; see
 /// coarsen() in algebra/coarsen.hpp. `build` gets the key "coarsened_from".
 VdagMetadata coarser_metadata(VdagMetadata metadata, const SvdagView& dag);
+
+/// Changes the description of attributes, which must have some, to that of the attributes that
+/// coarsen_attributes() makes of them within these bounds for a grid of `levels` levels. The errors
+/// of values that are encoded again are not known.
+void describe_coarser(AttributesMetadata& attributes, int levels, const CoarsenBounds& bounds = {});
 
 }  // namespace voxdag

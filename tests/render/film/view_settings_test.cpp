@@ -46,10 +46,10 @@ TEST_F(Settings, ChannelsHaveANameAndARange) {
   EXPECT_EQ(settings.channel_range->least, -1.5);
   EXPECT_EQ(settings.channel_range->most, 20);
   EXPECT_FALSE(read(R"({"channel": {"name": "", "range": null}})").channel_range);
-  EXPECT_EQ(error(R"({"channel": {"range": [2, 2]}})"),
-            "\"channel.range\" is not an array of two numbers, the smaller one first");
-  EXPECT_EQ(error(R"({"channel": {"range": [2]}})"),
-            "\"channel.range\" is not an array of two numbers, the smaller one first");
+  for (const std::string range : {"[2, 2]", "[2]", "[-1e308, 2]", "[2, 3.5e38]", "[2, null]"})
+    EXPECT_EQ(error(R"({"channel": {"range": )" + range + "}}"),
+              "\"channel.range\" is not an array of two numbers in the range of floats, the "
+              "smaller one first");
   EXPECT_EQ(error(R"({"channel": {"name": 1}})"), "\"channel.name\" is not a text");
 }
 

@@ -28,12 +28,12 @@ const PARTS = ['source', 'blob_source', 'container', 'levels', 'attributes', 'wi
 /**
  * The messages of the worker; `scene` is the file that was in a page.
  * @typedef {{type: 'info', info: FileInfo, settings: string | null, scene: Blob | null, bytes: number}
- *   | {type: 'progress', bytes: number}
+ *   | {type: 'progress', bytes: number, channel?: ChannelInfo}
  *   | {type: 'level', level: number, shown: number, words: Uint32Array, codes: Uint8Array | null, mostInstances: number}
  *   | {type: 'leaves', shown: number, halves: Uint32Array, codes: Uint8Array | null, mostInstances: number}
  *   | ({type: 'attributes'} & Attributes)
  *   | ({type: 'channel'} & Channel)
- *   | {type: 'note', text: string} | {type: 'done', requests: number}
+ *   | {type: 'note', text: string} | {type: 'done', requests: number, isScene: boolean}
  *   | {type: 'error', title: string, text: string}} LoaderMessage
  */
 

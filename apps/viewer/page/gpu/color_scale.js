@@ -34,7 +34,8 @@ export function scaleColor(show, place) {
  * @param {import('../file/scene_loader.js').Channel} channel @param {[number, number] | null} shown  The values of the first and the last colour.
  */
 export function channelUniforms({ values, range }, shown) {
+  // Ends that are one float have a step between them, of some floats.
   const isFloat = values instanceof Float32Array, ends = shown ?? range;
   const least = isFloat ? 0 : Math.max(-(2 ** 31), Math.min(Math.floor(ends[0]), 2 ** 31 - 1)), [low, high] = ends.map((x) => (isFloat ? x / 2 : x - least));
-  return { ints: { u_channel: Number(isFloat), u_channel_least: least }, floats: { u_channel_ends: [low, high > low ? high : low + Math.abs(low) + 1] } };
+  return { ints: { u_channel: Number(isFloat), u_channel_least: least }, floats: { u_channel_ends: [low, Math.fround(high) > Math.fround(low) ? high : low + Math.abs(low) * 2 ** -22 + 1e-30] } };
 }

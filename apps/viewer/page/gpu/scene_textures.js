@@ -55,9 +55,11 @@ export class SceneTextures {
     };
   }
 
-  /** Uploads a channel in place of another. @param {import('../file/scene_loader.js').Channel} of */
+  /** Uploads a channel, or none, in place of another. @param {import('../file/scene_loader.js').Channel | null} of */
   setChannel(of) {
     if (this.channel !== null) this.gl.deleteTexture(this.channel.values.texture);
+    this.channel = null;
+    if (of === null) return;
     this.channel = { of, values: new LongTexture(this.gl, 'R32UI', of.values.length) };
     this.channel.values.set(0, new Uint32Array(of.values.buffer));
   }

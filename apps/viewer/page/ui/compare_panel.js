@@ -28,10 +28,12 @@ export function comparePanel(ui) {
   const draw = () => show(second ? shown : 'first', [nameOf(viewer), nameOf(second)]);
 
   const follow = () => {
-    const { measures, annotations, path, ...settings } = viewer.get();
-    second?.set({ ...settings, camera: viewer.camera() }, 'compare');
+    const { measures, annotations, path, ...settings } = viewer.get(), shown = viewer.channel();
+    // Both scenes have the scale of the legend.
+    const channel = shown && { name: shown.name, range: shown.range[0] < shown.range[1] ? shown.range : null };
+    second?.set({ ...settings, ...(channel && { channel }), camera: viewer.camera() }, 'compare');
   };
-  for (const event of ['settings', 'info', 'level']) viewer.on(event, follow);
+  for (const event of ['settings', 'info', 'level', 'channel']) viewer.on(event, follow);
 
   const remove = () => {
     second?.destroy();

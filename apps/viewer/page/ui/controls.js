@@ -129,12 +129,15 @@ export function toggle({ label, get, set, hint }) {
 export function choice({ label, options, get, set }) {
   const id = newId();
   const select = h('select', { id, on: { change: () => set(/** @type {T} */ (select.value)) } });
+  const fill = (/** @type {[T, string][]} */ all) => {
+    resize(select, all.length, () => h('option'));
+    all.forEach(([value, name], i) => Object.assign(select.options[i], { value, text: name }));
+  };
+  if (typeof options !== 'function') fill(options);
   return {
     element: h('div', { class: 'row choice' }, h('label', { for: id }, label), select),
     refresh(settings) {
-      const all = typeof options === 'function' ? options() : options;
-      resize(select, all.length, () => h('option'));
-      all.forEach(([value, name], i) => Object.assign(select.options[i], { value, text: name }));
+      if (typeof options === 'function') fill(options());
       select.value = get(settings);
     },
   };
@@ -169,10 +172,17 @@ export function segments({ label, options, get, set, bare }) {
  * @returns {Control}
  */
 export function textField({ label, most, hint, get, set, event = 'input' }) {
-  const id = newId(), input = h('input', { type: 'text', id, maxlength: most, on: { [event]: () => set(input.value) } });
+  const id = newId(), waits = event === 'change', changed = () => {
+    if (waits) input.blur();
+    set(input.value);
+  };
+  const input = h('input', { type: 'text', id, maxlength: most, on: { [event]: changed } });
   return {
     element: h('div', { class: 'row text' }, h('label', { for: id, title: hint }, label), input),
-    refresh(settings) { if (input.value !== get(settings)) input.value = get(settings); },
+    refresh(settings) {
+      // Text that is being typed stays.
+      if (input.value !== get(settings) && !(waits && document.activeElement === input)) input.value = get(settings);
+    },
   };
 }
 

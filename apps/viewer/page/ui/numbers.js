@@ -36,9 +36,11 @@ export const roundText = (count) => (count < 1e6 ? countText(+count.toPrecision(
 /** Returns a time as a person would say it. @param {number} seconds */
 export const secondsText = (seconds) => (seconds < 1 ? 'less than a second' : seconds < 99 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} minutes`);
 
-/** Returns a value of a channel: with as few digits as tell it from other floats. @param {number} value */
+/** Returns a value of a channel: a float with as few digits as tell it from other floats, another number in full. @param {number} value */
 export function valueText(value) {
-  let digits = Number.isInteger(value) ? 9 : 1;
-  while (digits < 9 && Math.fround(Number(value.toPrecision(digits))) !== Math.fround(value)) ++digits;
-  return String(digits < 9 ? Number(value.toPrecision(digits)) : value).replace(/^-/, '\u2212');
+  let digits = 1, text = String(value);
+  if (!Number.isSafeInteger(value) && Math.fround(value) === value)
+    do text = String(Number(value.toPrecision(digits)));
+    while (digits++ < 9 && Math.fround(Number(text)) !== value);
+  return text.replace(/^-/, '\u2212');
 }

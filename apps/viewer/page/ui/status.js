@@ -39,7 +39,8 @@ export class Status {
     this.failure = null;
     viewer.on('info', () => this.#loading());
     viewer.on('settings', (_, by) => { if (by !== 'hands' && by !== 'film') this.#name(); });
-    for (const event of ['progress', 'level', 'still']) viewer.on(event, () => this.#loading());
+    viewer.on('progress', ({ channel, bytes, total }) => (channel ? this.#part(Math.min(1, bytes / total)) : this.#loading()));
+    for (const event of ['level', 'still']) viewer.on(event, () => this.#loading());
     viewer.on('loaded', () => { this.isLoaded = true; this.#loading(); });
     viewer.on('opened', () => { this.isLoaded = false; this.#mend(); });
     viewer.on('note', (text) => this.toast(text, true));
@@ -74,9 +75,13 @@ export class Status {
     this.#name();
     say(this.detail, done ? `${countText(info.resolution)}³ · ${countText(info.voxels)} voxels`
       : `Level ${s.levelsLoaded} of ${info.levels} · ${bytesText(s.bytesLoaded)} of ${bytesText(total)}`);
-    const part = done ? 100 : total > 0 ? Math.min(100, 100 * s.bytesLoaded / total) : 0;
-    this.bar.setAttribute('aria-valuenow', String(Math.round(part)));
-    /** @type {HTMLElement} */ (this.bar.firstChild).style.transform = `scaleX(${part / 100})`;
+    this.#part(done ? 1 : total > 0 ? Math.min(1, s.bytesLoaded / total) : 0, done);
+  }
+
+  /** Shows which part has arrived. @param {number} part  0 to 1. @param {boolean} [done] */
+  #part(part, done = part === 1) {
+    this.bar.setAttribute('aria-valuenow', String(Math.round(100 * part)));
+    /** @type {HTMLElement} */ (this.bar.firstChild).style.transform = `scaleX(${part})`;
     this.bar.classList.toggle('done', done);
     this.bar.setAttribute('aria-hidden', String(done));
   }

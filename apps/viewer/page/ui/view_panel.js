@@ -68,14 +68,15 @@ export function viewPanel(ui) {
     set: (name) => viewer.set({ channel: { name, range: null }, ...(name && { show: 'light' }) }, 'ui'),
   });
   const range = textField({
-    label: 'Range', most: 60, event: 'change', hint: 'The values of the first and the last colour; empty: those of the channel', get: () => viewer.channel()?.range.map(valueText).join(' to ') ?? '',
+    label: 'Range', most: 60, event: 'change', get: () => viewer.channel()?.range.map(valueText).join(' to ') ?? '',
     set: (typed) => {
-      const [least, most] = typed.split('to').map((part) => typedNumber(part, new Map()) ?? NaN);
-      if (typed && !(least < most)) ui.toast('Type two values, such as 0 to 100', true);
+      const ends = typed.split('to').map((part) => typedNumber(part, new Map()) ?? NaN), [least, most] = ends;
+      if (typed && !(ends.length === 2 && least < most && Math.max(-least, most) < 3.4e38)) ui.toast('Type two values, such as 0 to 100', true);
       else viewer.set({ channel: { range: typed ? [least, most] : null } }, 'ui');
       ui.refresh();
     },
   });
+  const ends = h('div', {}, range.element, h('p', { class: 'hint' }, 'The values of the first and the last colour; empty: those of the channel.'));
   const normals = toggle({ label: 'Normals of the file', hint: 'Off: the page computes them from the voxels', get: (s) => s.normals, set: (on) => viewer.set({ normals: on }, 'ui') });
   const lod = slider({
     label: 'Level of detail', min: 0, max: 8, step: 0.25, get: (s) => s.lod, set: (value) => viewer.set({ lod: value }, 'ui'),
@@ -105,14 +106,14 @@ export function viewPanel(ui) {
       group('Views', h('div', { class: 'grid' }, ...SIDES.map(([name, label], i) =>
         button(label, () => hands.view(name), { title: `${label} (key ${i + 1})` })),
       button('Frame', () => hands.frame(), { title: 'Show the whole scene (key F)' })), fov.element, up.element),
-      group('Picture', show.element, meaning, channel.element, range.element, level.element, colors.element, normals.element, lod.element, cubes.element),
+      group('Picture', show.element, meaning, channel.element, ends, level.element, colors.element, normals.element, lod.element, cubes.element),
       group('', button('Reset all settings', () => ui.reset()))),
     refresh(/** @type {Settings} */ settings) {
       const { info } = viewer;
       level.limits(0, levels(), 1);
-      channel.element.hidden = !info?.channels.length;
-      range.element.hidden = viewer.channel() === null;
-      colors.element.hidden = !info?.hasColors || settings.channel.name !== '';
+      channel.element.hidden = !info?.channels.length || !info.isWhole;
+      ends.hidden = viewer.channel() === null;
+      colors.element.hidden = !info?.hasColors || viewer.channel() !== null;
       normals.element.hidden = !info?.hasNormals;
       meaning.textContent = MEANINGS[settings.show] ?? '';
       meaning.hidden = settings.show === 'light';

@@ -28,19 +28,28 @@ class ChannelFields {
     return with_kind(kind, [](auto zero) { return sizeof zero; });
   }
   std::string name(std::size_t i, std::span<const char* const> taken) const {
-    return field_name(look_.channels()[i], taken);
+    return field_name(look_.channels(), i, taken);
   }
-  /// Returns the name of a field: that of the channel, after "channel_" if it is one of `taken`.
-  static std::string field_name(const ChannelView& channel, std::span<const char* const> taken) {
-    const std::string name(channel.name());
-    const bool is_taken = std::find(taken.begin(), taken.end(), name) != taken.end();
-    return is_taken ? "channel_" + name : name;
+  /// Returns the name of a field: that of channel `i`, after "channel_" if it is one of `taken`;
+  /// after more of these if another channel has that name.
+  static std::string field_name(std::span<const ChannelView> channels, std::size_t i,
+                                std::span<const char* const> taken) {
+    std::string name(channels[i].name());
+    const auto is_taken = [&] {
+      if (std::find(taken.begin(), taken.end(), name) != taken.end()) return true;
+      for (std::size_t k = 0; k < channels.size(); ++k)
+        if (k != i && channels[k].name() == name) return true;
+      return false;
+    };
+    while (is_taken()) name.insert(0, "channel_");
+    return name;
   }
   /// Returns the field of a structured type of NumPy: ", ('heat', '<f4')".
-  static std::string npy_field(const ChannelView& channel, std::span<const char* const> taken) {
+  static std::string npy_field(std::span<const ChannelView> channels, std::size_t i,
+                               std::span<const char* const> taken) {
     constexpr const char* kTypes[] = {"|u1", "<u2", "<i2", "<i4", "<f4"};
-    return ", ('" + field_name(channel, taken) + "', '" +
-           kTypes[static_cast<std::size_t>(channel.kind)] + "')";
+    return ", ('" + field_name(channels, i, taken) + "', '" +
+           kTypes[static_cast<std::size_t>(channels[i].kind)] + "')";
   }
   /// Returns the bytes of the fields of a voxel, valid until the next call.
   std::span<const std::byte> row(Vec3i voxel, int level) {

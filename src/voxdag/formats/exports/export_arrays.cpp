@@ -30,8 +30,9 @@ struct CoordinateRows {
     if (look.has_colors()) add(", ('color', '|u1', (3,))", sizeof(Value8));
     if (look.has_materials()) add(", ('material', '<u2')", sizeof(std::uint16_t));
     constexpr const char* kTaken[] = {"voxel", "normal", "color", "material"};
-    for (const ChannelView& channel : look.channels())
-      add(ChannelFields::npy_field(channel, kTaken), ChannelFields::size_of(channel.kind));
+    for (std::size_t i = 0; i < channels.count(); ++i)
+      add(ChannelFields::npy_field(look.channels(), i, kTaken),
+          ChannelFields::size_of(channels.kind(i)));
     dtype += "]";
     layout.dtype = dtype;
     shape = {};

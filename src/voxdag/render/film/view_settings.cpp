@@ -269,10 +269,20 @@ class Reader {
         {{"name", [&](const Json& value) { settings_.channel = text(value, "channel.name"); }},
          {"range", [&](const Json& value) {
             if (value.is_null()) return;
+            const auto refuse_it = [&] {
+              refuse(
+                  "channel.range",
+                  "is not an array of two numbers in the range of floats, the smaller one first");
+            };
             if (!value.is_array() || value.size() != 2 || !value[0].is_number() ||
-                !value[1].is_number() || !(value[0].get<double>() < value[1].get<double>()))
-              refuse("channel.range", "is not an array of two numbers, the smaller one first");
-            settings_.channel_range = {value[0].get<double>(), value[1].get<double>()};
+                !value[1].is_number())
+              refuse_it();
+            const ChannelRange range{value[0].get<double>(), value[1].get<double>()};
+            const ChannelRange floats = range_of(ChannelKind::kF32);
+            if (!(range.least < range.most) || range.least < floats.least ||
+                range.most > floats.most)
+              refuse_it();
+            settings_.channel_range = range;
           }}});
   }
 

@@ -15,7 +15,7 @@ struct ViewSettings {
   RenderOptions options;
   bool colors = true, normals = true;  ///< Show the colours, the normals that the scene stores.
   std::string channel;                 ///< Show the values of this channel as colours; empty: none.
-  std::optional<ChannelRange> channel_range;  ///< Of the first and the last colour.
+  std::optional<ChannelRange> channel_range;  ///< The values of the first and the last colour.
   std::string title, licence;                 ///< Of a page; UTF-8, empty if the file has none.
   /// A warning for each setting that a picture cannot show and for each unknown key, such as
   /// "\"level\" is ignored: a picture shows the finest level".

@@ -60,12 +60,15 @@ async function readChannelList(source, head, { offset, length }) {
   const bytes = await readPart(source, head, { offset, length: Math.min(length, headerBytes + most * entryBytes) });
   const view = new DataView(bytes.buffer), count = length < headerBytes ? Infinity : view.getUint32(CHANNELS.channels, true);
   if (headerBytes + count * entryBytes > bytes.length) throw brokenFile('Chunk CHAN ends inside its header.');
-  const values = readSize(view, CHANNELS.values, 'The number of values in CHAN'), list = [];
+  const values = readSize(view, CHANNELS.values, 'The number of values in CHAN');
+  /** @type {{name: string, kind: string, bound: number, values: number, offset: number, length: number}[]} */
+  const list = [];
   let at = offset + headerBytes + count * entryBytes;
   for (let i = 0; i < count; ++i) {
     const entry = headerBytes + i * entryBytes, bound = view.getFloat64(entry + CHANNELS.bound, true), kind = kinds[view.getUint32(entry + CHANNELS.kind, true)];
     const name = /^([\w.-]{1,63})\0/.exec(String.fromCharCode(...bytes.subarray(entry, entry + CHANNELS.nameBytes)))?.[1];
     if (!name || !kind || !(bound >= 0)) throw brokenFile(`Channel ${i} of CHAN has no valid name, kind and bound.`);
+    if (list.some((one) => one.name === name)) throw brokenFile(`Chunk CHAN has two channels ${name}.`);
     const size = 8 * readSize(view, entry + CHANNELS.words, `The size of channel ${name}`);
     list.push({ name, kind, bound, values, offset: at, length: size });
     at += size;
@@ -91,9 +94,11 @@ function decodeChannel(words, { name, kind, bound, values: count }, cells) {
   }
   let least = Infinity, most = -Infinity;
   for (const x of values) {
-    if (!(x >= least)) least = x;
-    if (!(x <= most)) most = x;
+    if (x - x !== 0) throw brokenFile(`Channel ${name} has values that are not finite numbers.`);
+    if (x < least) least = x;
+    if (x > most) most = x;
   }
-  if (!(most - least < Infinity)) throw brokenFile(`Channel ${name} has values that are no numbers.`);
+  const size = 2 ** Number(kind.slice(1)), lowest = kind[0] === 'i' ? -size / 2 : 0;
+  if (!isFloat && (least < lowest || most >= lowest + size)) throw brokenFile(`Channel ${name} has values outside of its kind ${kind}.`);
   return { values, range: [least, most] };
 }

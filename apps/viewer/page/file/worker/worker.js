@@ -17,7 +17,7 @@ let head;
 let bytesLoaded = 0;
 /** The number of cells with attributes. */
 let cells = 0;
-/** What was asked for is done one after the other. @type {Promise<void>} */
+/** Requests are handled one after the other. @type {Promise<void>} */
 let queue = Promise.resolve();
 
 /** @param {any} message @param {ArrayBufferLike[]} [transfer] */
@@ -25,8 +25,8 @@ function send(message, transfer) {
   /** @type {any} */ (self).postMessage(message, transfer ?? []);
 }
 
-/** Reads bytes in slices and reports each. @param {number} offset @param {number} length @returns {Promise<Uint8Array>} */
-async function readSlices(offset, length) {
+/** Reads bytes in slices and reports each; those of a channel by themselves. @param {number} offset @param {number} length @param {any} [channel] @returns {Promise<Uint8Array>} */
+async function readSlices(offset, length, channel) {
   const bytes = new Uint8Array(length);
   let done = 0;
   if (offset < head.length) {
@@ -37,8 +37,8 @@ async function readSlices(offset, length) {
     const size = Math.min(SLICE_BYTES, length - done);
     await source.read(bytes.subarray(done, done + size), offset + done);
     done += size;
-    bytesLoaded += size;
-    send({ type: 'progress', bytes: bytesLoaded });
+    if (!channel) bytesLoaded += size;
+    send({ type: 'progress', bytes: channel ? done : bytesLoaded, channel });
   }
   return bytes;
 }
@@ -113,7 +113,7 @@ async function loadAttributes(wanted) {
   if (info.isEmpty || (!wanted.colors && !wanted.normals && !wanted.materials && !wanted.channels)) return;
   const index = parseCellIndex(await readSlices(chunk('CIDX').offset, chunk('CIDX').length), info.levels);
   if (index.cells >= 2 ** 32) {
-    send({ type: 'note', text: 'The colours have more than 4 G cells: the viewer cannot show them.' });
+    send({ type: 'note', text: 'The viewer cannot show colours and channels of more than 4 G cells.' });
     return;
   }
   cells = index.cells;
@@ -147,10 +147,10 @@ async function handle(request) {
       await loadLevels(request.shown);
       await loadAttributes(request);
     } else if (cells > 0) {
-      const { channel } = request, decoded = decodeChannel(asWords(await readSlices(channel.offset, channel.length)), channel, cells);
+      const { channel } = request, decoded = decodeChannel(asWords(await readSlices(channel.offset, channel.length, channel)), channel, cells);
       send({ type: 'channel', name: channel.name, ...decoded }, [decoded.values.buffer]);
     }
-    send({ type: 'done', requests: source instanceof ServerSource ? source.requests : 0 });
+    send({ type: 'done', requests: source instanceof ServerSource ? source.requests : 0, isScene: request.type === 'load' });
   }
 }
 

@@ -24,6 +24,7 @@
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/printable.hpp"
 #include "voxdag/core/srgb.hpp"
+#include "voxdag/formats/exports/channel_fields.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
 #include "voxdag/formats/exports/full_nodes.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
@@ -107,8 +108,8 @@ class GridFiller {
         colors_(look_.has_colors() ? openvdb::Vec3SGrid::create() : nullptr) {
     for (std::size_t i = 0; i < look_.channels().size(); ++i) {
       channels_.push_back(openvdb::FloatGrid::create(0));
-      const std::string name(look_.channels()[i].name());
-      channels_.back()->setName(name == "density" || name == "Cd" ? "channel_" + name : name);
+      constexpr const char* kTaken[] = {"density", "Cd"};
+      channels_.back()->setName(ChannelFields::field_name(look_.channels(), i, kTaken));
       channel_access_.push_back(channels_.back()->getAccessor());
     }
   }
