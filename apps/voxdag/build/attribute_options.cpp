@@ -23,8 +23,8 @@ bool parse_cut(const std::string& text) {
   return text == "cut";
 }
 
-/// Takes the channels that --channel names.
-bool add_channels(const std::string& text, AttributeOptions& options) {
+/// Returns the options with the channels that --channel names.
+AttributeOptions with_channels(const std::string& text, AttributeOptions options) {
   for (const std::string& name : parse_words(text))
     if (name == "metallic")
       options.metallic = true;
@@ -32,7 +32,7 @@ bool add_channels(const std::string& text, AttributeOptions& options) {
       options.roughness = true;
     else
       throw std::invalid_argument("\"" + name + "\" is neither metallic nor roughness");
-  return true;
+  return options;
 }
 
 IdKind parse_ids(const std::string& text) {
@@ -77,8 +77,8 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
       .in_group(group);
   command
       .parsed(
-          "--channel", arguments.has_channels,
-          [&options](const std::string& text) { return add_channels(text, options); },
+          "--channel", options,
+          [&options](const std::string& text) { return with_channels(text, options); },
           "metallic|roughness,...",
           "Also store these numbers of the materials of glTF and OBJ, filtered from textures as "
           "colours are, as channels of all cells: 0 to 255. `voxdag render` shows them")
@@ -87,9 +87,8 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
       .parsed(
           "--attribute-resolution", arguments.levels, parse_levels, "M",
           "Resolution of the finest colours, normals, materials and channels, in cells per side: a "
-          "power of "
-          "two from 4 to the grid's resolution (default: the finest that is expected to fit into "
-          "4 GiB and the memory limit)")
+          "power of two from 4 to the grid's resolution (default: the finest that is expected to "
+          "fit into 4 GiB and the memory limit)")
       .only_if(is_wanted, "without --color, --normal, --material-ids and --channel")
       .in_group(group);
   command

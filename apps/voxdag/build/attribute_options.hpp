@@ -19,13 +19,13 @@ enum class IdKind { kDefault, kMaterial, kObject, kFile };
 struct AttributeArguments {
   AttributeOptions options;
   bool colors_if_any = false;  ///< Store colours if the mesh has some.
-  bool has_channels = false;   ///< --channel is given.
   IdKind ids = IdKind::kDefault;
   std::optional<Value8> inside_color;  ///< Inside of solids, sRGB. Empty: as the nearest surface.
   std::optional<int> levels;           ///< log2 of --attribute-resolution.
   std::optional<bool> cut;             ///< Whether --alpha is "cut"; empty: not given.
 
-  bool needs_shading() const { return options.colors || options.normals || has_channels; }
+  bool has_channels() const { return options.metallic || options.roughness; }
+  bool needs_shading() const { return options.colors || options.normals || has_channels(); }
   bool needs_appearance() const { return needs_shading() || colors_if_any || cuts_alpha(); }
   bool is_wanted() const { return needs_shading() || options.materials; }
   /// Returns whether voxels that the alpha test removes are not set.

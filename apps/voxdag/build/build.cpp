@@ -141,8 +141,7 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
     throw UsageError(
         "--work and --parts build the surface's voxels by --method hash: not with --solid, "
         "--color, --normal, --material-ids, --channel, --alpha cut, --compact, several meshes, "
-        "another method "
-        "or an output that is no .vdag file");
+        "another method or an output that is no .vdag file");
   if (arguments.solid) {
     if (arguments.attributes.cut.value_or(false))
       throw UsageError("--solid fills the whole surface: not with --alpha cut");

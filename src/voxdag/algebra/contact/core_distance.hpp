@@ -107,7 +107,6 @@ struct SquaredDistance {
   double exact(Vec3i first, std::int32_t side, double bound_in, double most) const {
     return bound(first, side, bound_in, most);
   }
-  bool covers(Vec3i, std::int32_t) const { return false; }
 };
 
 /// SquaredDistance of a point.
@@ -122,7 +121,6 @@ struct SquaredPointDistance {
   }
   double bound(Vec3i, std::int32_t, double bound, double) const { return bound; }
   double exact(Vec3i, std::int32_t, double bound, double) const { return bound; }
-  bool covers(Vec3i, std::int32_t) const { return false; }
 };
 
 }  // namespace voxdag

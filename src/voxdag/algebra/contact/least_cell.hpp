@@ -34,7 +34,7 @@ enum class Ties {
 ///                                     children in the mask `cells` whose bound is at most `most`
 ///   bound(first, side, bound, most)   a closer bound of one of them; kNoCost if it is above `most`
 ///   exact(first, side, bound, most)   the cost of a cell that is looked for
-///   covers(first, side)               whether the cost of every cell in a cube is 0
+///   covers(first, side)               whether the cost of every cell in a cube is 0; may be absent
 /// Takes a view that has a root of its own (SvdagView::root), which has voxels.
 template <CellKind kKind, Ties kTies, class Cost>
 class LeastCell {
@@ -92,7 +92,8 @@ class LeastCell {
         if (const int i = std::countr_zero(rest); bounds[i] < bounds[next]) next = i;
       if (is_beaten(bounds[next])) return;
       const Vec3i begin = first + child_offset(next) * side;
-      if (kKind == CellKind::kVoxels && cost_.covers(begin, side)) return take(begin, side, 0);
+      if constexpr (requires { cost_.covers(begin, side); })
+        if (cost_.covers(begin, side)) return take(begin, side, 0);
       visit(level + 1, child(next), begin);
       near ^= 1u << next;
     }

@@ -180,7 +180,6 @@ class TouchTime {
   double exact(Vec3i first, std::int32_t side, double bound, double most) const {
     return time({first, side}, bound, most, true, nullptr);
   }
-  bool covers(Vec3i, std::int32_t) const { return false; }
   /// Returns the direction from a voxel to the core when they touch, of unit length; 0 if they are
   /// closer than 1e-6 voxels at the start.
   Vec3d normal(Vec3i voxel) const {

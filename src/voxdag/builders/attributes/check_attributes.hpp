@@ -21,7 +21,7 @@ struct AttributeCheck {
   ValueCheck colors;     ///< Errors as AttributeOptions::color_bound measures them.
   ValueCheck normals;    ///< Errors in degrees.
   ValueCheck materials;  ///< 1 - area of the stored material / largest area of a material.
-  /// Of the channels `metallic` and `roughness` of the kind u8, the larger error; 255 stands for 1.
+  /// The larger error of the two channels, which have the kind u8; 1 is the whole range.
   ValueCheck metallic_roughness;
 };
 

@@ -42,6 +42,15 @@ Source with_values(const Path& path, const Options& options) {
   return kOpen(path, options.threshold, options.labels, options.channels);
 }
 
+/// For packed splats, which are held in memory.
+template <auto kOpen>
+Source with_splats(const Path& path, const Options& options) {
+  return kOpen(path, options.splats_are_points, options.work);
+}
+Source open_octomap_file(const Path& path, const Options& options) {
+  return open_octomap(path, options.threshold);
+}
+
 constexpr SourceFormat kSourceFormats[] = {
     {".npy", true, with_values<open_npy>},
     {".xyz", false, with_labels<open_xyz_points>},
@@ -58,14 +67,8 @@ constexpr SourceFormat kSourceFormats[] = {
      [](const Path& path, const Options& options) {
        return open_splat_file(path, options.splats_are_points);
      }},
-    {".spz", false,
-     [](const Path& path, const Options& options) {
-       return open_spz(path, options.splats_are_points, options.work);
-     }},
-    {".sog", false,
-     [](const Path& path, const Options& options) {
-       return open_sog(path, options.splats_are_points, options.work);
-     }},
+    {".spz", false, with_splats<open_spz>},
+    {".sog", false, with_splats<open_sog>},
     {".las", false, with_fields<open_las_points>},
     {".pcd", false, with_labels<open_pcd_points>},
     {".binvox", false, [](const Path& path, const Options&) { return open_binvox(path); }},
@@ -85,14 +88,8 @@ constexpr SourceFormat kSourceFormats[] = {
     {".schematic", false, with_labels<open_schematic>},
     {".litematic", false, with_labels<open_schematic>},
     {".nbt", false, with_labels<open_schematic>},
-    {".bt", true,
-     [](const Path& path, const Options& options) {
-       return open_octomap(path, options.threshold);
-     }},
-    {".ot", true,
-     [](const Path& path, const Options& options) {
-       return open_octomap(path, options.threshold);
-     }},
+    {".bt", true, open_octomap_file},
+    {".ot", true, open_octomap_file},
 };
 
 /// Opens the files of a folder as slices.
@@ -107,7 +104,7 @@ std::unique_ptr<VoxelSource> open_slices(const Path& folder, const Options& opti
     throw Error(folder.string(), "", "the folder has .png and .tif files: which are the slices?");
   if (has_tiff) return with_values<open_tiff>(folder, options);
   // Files of DICOM may have any names.
-  if (!has_png && has_dicom(folder)) return open_dicom(folder, options.threshold, options.labels);
+  if (!has_png && has_dicom(folder)) return with_values<open_dicom>(folder, options);
   return open_png_slices(folder, options.threshold,
                          options.use_placement && has_numbered_slices(folder));
 }
