@@ -39,6 +39,18 @@ std::size_t agreeing(const std::vector<std::uint8_t>& a, const std::vector<std::
   return count;
 }
 
+std::size_t hits_at_same_place(const Grid& grid, std::span<const CastRay> rays,
+                               const TraceRunner& a, const TraceRunner& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const double t = static_cast<double>(a.closest_t(i)), u = static_cast<double>(b.closest_t(i));
+    const Vec3d step = to_world_ray(grid, rays[i].ray).direction * (1 / grid.voxel_size);
+    const bool is_near = std::abs(t - u) * std::sqrt(dot(step, step)) <= 0.01;
+    count += is_near || (std::isinf(t) && std::isinf(u)) ? 1 : 0;
+  }
+  return count;
+}
+
 std::vector<CastRay> sample_of(std::span<const CastRay> rays, std::size_t most) {
   constexpr std::size_t kRun = 64;
   const std::size_t step = std::max<std::size_t>(1, rays.size() / most);

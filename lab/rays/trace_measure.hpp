@@ -25,6 +25,11 @@ std::vector<Measured> measure(const std::vector<TraceRunner>& runners, std::size
 /// Returns the number of rays for which both or neither hit something.
 std::size_t agreeing(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b);
 
+/// Returns the number of rays whose closest hits, of two runners with closest_t, are a hundredth of
+/// a voxel apart at most, or for which neither hits something.
+std::size_t hits_at_same_place(const Grid& grid, std::span<const CastRay> rays,
+                               const TraceRunner& a, const TraceRunner& b);
+
 /// Returns a sample of the rays, in runs of 64 that are spread evenly over the set: all of them if
 /// there are fewer than 2 * most, else about `most` to 1.5 * most.
 std::vector<CastRay> sample_of(std::span<const CastRay> rays, std::size_t most);

@@ -16,6 +16,8 @@ struct TraceRunner {
   std::function<void()> before;
   /// If not empty, replaces both: casts the whole set and returns the seconds that count.
   std::function<double(std::uint8_t* hits)> cast_set{};
+  /// If not empty: returns t of the closest hit of ray i, or infinity. Its time does not count.
+  std::function<float(std::size_t i)> closest_t{};
 };
 
 }  // namespace voxdag::lab

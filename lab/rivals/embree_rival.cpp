@@ -4,6 +4,7 @@
 #if VOXDAG_HAS_EMBREE
 
 #include <algorithm>
+#include <cmath>
 
 #include "voxdag/mesh_view/embree_scene.hpp"
 
@@ -73,6 +74,16 @@ class EmbreeRival::Scene {
     }
   }
 
+  float closest_t(std::size_t i) const {
+    RTCIntersectContext ctx = context(false);
+    RTCRayHit query{};
+    query.ray = singles_[i];
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(embree_.scene(), &ctx, &query);
+    return query.hit.geomID != RTC_INVALID_GEOMETRY_ID ? query.ray.tfar : HUGE_VALF;
+  }
+
   void cast_single(bool is_closest, std::size_t first, std::size_t last, std::uint8_t* hits) const {
     RTCIntersectContext ctx = context(false);
     for (std::size_t i = first; i < last; ++i) {
@@ -136,6 +147,7 @@ std::vector<TraceRunner> EmbreeRival::prepare(const Grid& grid, const RaySet& se
                        scene_->cast_single(closest, first, last, hits);
                      },
                      {}});
+  runners.back().closest_t = [this](std::size_t i) { return scene_->closest_t(i); };
   for (const bool is_coherent : {true, false})
     runners.push_back(
         {"embree_packet16",

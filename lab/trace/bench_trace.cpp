@@ -10,6 +10,7 @@
 #include "lab/rays/cuda_runner.hpp"
 #include "lab/rays/trace_measure.hpp"
 #include "lab/rivals/embree_rival.hpp"
+#include "lab/rivals/tinybvh_rival.hpp"
 #include "lab/rivals/trace_program_rival.hpp"
 #include "lab/trace/trace_casters.hpp"
 
@@ -19,8 +20,9 @@ namespace {
 /// Sums of times and counts over views.
 struct Sums {
   double seconds = 0, agreeing = 0;
-  std::vector<double> view_rates;  ///< Million rays per second.
-  std::uint64_t bytes = 0;         ///< Of a rival's structure.
+  std::vector<double> view_rates;                   ///< Million rays per second.
+  std::uint64_t bytes = 0;                          ///< Of a rival's structure.
+  std::optional<double> same_place = std::nullopt;  ///< Rays; see RivalRate::same_place.
 
   void add(double more_seconds, double more_agreeing) {
     seconds += more_seconds;
@@ -28,6 +30,7 @@ struct Sums {
   }
   void add_view(double rays, const Sums& view) {
     add(view.seconds, view.agreeing);
+    if (view.same_place) same_place = same_place.value_or(0) + *view.same_place;
     view_rates.push_back(rays / view.seconds * 1e-6);
   }
 };
@@ -39,7 +42,7 @@ struct RowSums {
 };
 
 /// Measures a set with the casts of voxdag and of the rivals, and adds up the times.
-void measure_set(const TraceLayout& layout, const TraceRunner& ours,
+void measure_set(const Grid& grid, const TraceLayout& layout, const TraceRunner& ours,
                  const std::vector<CastRay>& casts, std::vector<TraceRunner> runners, int repeat,
                  RowSums& sums) {
   constexpr std::size_t kCounted = 50'000;
@@ -53,10 +56,15 @@ void measure_set(const TraceLayout& layout, const TraceRunner& ours,
   sums.ours.add_view(count, {measured[0].seconds, count, {}});
   sums.hits += static_cast<double>(
       std::count(measured[0].hits.begin(), measured[0].hits.end(), std::uint8_t{1}));
+  const auto embree = std::find_if(runners.begin(), runners.end(), [](const TraceRunner& runner) {
+    return runner.name == "embree_single";
+  });
   std::map<std::string, Sums> best;  // the fastest of runners with the same name
   for (std::size_t i = 1; i < runners.size(); ++i) {
-    const Sums s{
+    Sums s{
         measured[i].seconds, static_cast<double>(agreeing(measured[0].hits, measured[i].hits)), {}};
+    if (embree != runners.end() && runners[i].closest_t && runners[i].name != embree->name)
+      s.same_place = static_cast<double>(hits_at_same_place(grid, casts, *embree, runners[i]));
     const auto [at, is_new] = best.try_emplace(runners[i].name, s);
     if (!is_new && s.seconds < at->second.seconds) at->second = s;
   }
@@ -78,8 +86,9 @@ TraceRow row_of(const TraceScene& scene, const std::string& layout_name, std::ui
   row.cells_per_ray = sums.cells / sums.rays;
   row.bytes_per_ray = sums.bytes / sums.rays;
   for (const auto& [name, s] : sums.rivals)
-    row.rivals.push_back(
-        {name, sums.rays / s.seconds * 1e-6, s.agreeing / sums.rays, s.view_rates, s.bytes});
+    row.rivals.push_back({name, sums.rays / s.seconds * 1e-6, s.agreeing / sums.rays, s.view_rates,
+                          s.bytes,
+                          s.same_place ? std::optional(*s.same_place / sums.rays) : std::nullopt});
   return row;
 }
 
@@ -88,6 +97,9 @@ std::vector<std::unique_ptr<Rival>> rivals_for(const TraceScene& scene, const Tr
   std::vector<std::unique_ptr<Rival>> rivals;
   if (scene.mesh != nullptr && EmbreeRival::is_available())
     rivals.push_back(std::make_unique<EmbreeRival>(*scene.mesh));
+  if (scene.mesh != nullptr)
+    if (std::unique_ptr<Rival> tinybvh = make_tinybvh_rival(*scene.mesh))
+      rivals.push_back(std::move(tinybvh));
   const auto add_program = [&](const char* name, const std::string& program, std::size_t rays) {
     if (!program.empty() && !scene.file.empty())
       rivals.push_back(
@@ -222,7 +234,7 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
           others.back().name = "voxdag_cpu";
           ours = cuda_runner(*device_scenes[i], rays, set, device_beams);
         }
-        measure_set(*layouts[i], ours, set, others, plan.repeat,
+        measure_set(scene.grid, *layouts[i], ours, set, others, plan.repeat,
                     sums[i][static_cast<std::size_t>(rays)]);
       }
     }

@@ -51,6 +51,8 @@ struct RivalRate {
   double agreement = 0;  ///< Fraction of the rays with equal results: two hits or two misses.
   std::vector<double> view_mrays_per_second;  ///< Empty if it casts all views together.
   std::uint64_t bytes = 0;  ///< Size of the structure that it casts at; 0 if it does not say.
+  /// Fraction of the rays for which hits_at_same_place() with Embree; empty if not compared.
+  std::optional<double> same_place;
 };
 
 /// One class of rays in one scene, all views together.

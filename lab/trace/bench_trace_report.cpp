@@ -35,6 +35,7 @@ Json trace_json(const TraceResults& results, const Json& machine) {
       with_rival["ratio"] = row.mrays_per_second / rival.mrays_per_second;
       with_rival["rival_agreement"] = rival.agreement;
       with_rival["rival_view_mrays_per_s"] = rival.view_mrays_per_second;
+      if (rival.same_place) with_rival["rival_at_embrees_place"] = *rival.same_place;
       if (rival.bytes > 0) with_rival["rival_bytes"] = rival.bytes;
       array.push_back(with_rival);
     }
