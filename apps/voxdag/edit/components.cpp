@@ -55,13 +55,12 @@ void run(const ComponentsArguments& arguments, Session& session) {
   if (!edit.output.empty()) check_writable(edit.output);
   MemoryBudget memory = command_budget(edit.memory_limit);
   const DagModel file(session.subject, {&memory, &session.progress});
-  const std::vector<ComponentSizes> sizes =
-      component_sizes(file.view(), arguments.neighbours, {&memory, &session.progress});
+  const Components components(file.view(), arguments.neighbours, {&memory, &session.progress});
+  const std::vector<ComponentSizes> sizes = components.sizes();
   if (!edit.output.empty()) {
     const std::uint64_t least =
         arguments.largest ? (sizes.empty() ? 1 : sizes.front().voxels) : arguments.least;
-    Svdag dag =
-        keep_components(file.view(), least, arguments.neighbours, {&memory, &session.progress});
+    Svdag dag = components.keep(least);
     const CommandState asked = session;
     session.quiet = asked.quiet || asked.json;
     session.json = false;

@@ -34,6 +34,12 @@ class DisjointSets {
   std::vector<std::uint32_t> parents_;
 };
 
+template <class T>
+void remove_copies(std::vector<T>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
 std::uint64_t cell_voxels(int levels, int level) {
   return std::uint64_t{1} << (3 * (levels - level));
 }
@@ -148,8 +154,17 @@ void Regions::find_nodes(const SvdagView& dag, int level) {
     }
     begin[8] = static_cast<std::uint32_t>(members.size());
     sets.reset(members.size());
+    // Returns whether nothing is left to join: no regions, or regions of one set.
+    const auto are_joined = [&](int a, int b) {
+      if (begin[a] == begin[a + 1] || begin[b] == begin[b + 1]) return true;
+      const std::uint32_t set = sets.find(begin[a]);
+      for (const int child : {a, b})
+        for (std::uint32_t i = begin[child]; i < begin[child + 1]; ++i)
+          if (sets.find(i) != set) return false;
+      return true;
+    };
     for (const ChildPair& pair : tables.within) {
-      if (begin[pair.a] == begin[pair.a + 1] || begin[pair.b] == begin[pair.b + 1]) continue;
+      if (are_joined(pair.a, pair.b)) continue;
       touches.clear();
       const int first = pair.is_swapped ? pair.b : pair.a,
                 second = pair.is_swapped ? pair.a : pair.b;
@@ -173,6 +188,7 @@ void Regions::find_nodes(const SvdagView& dag, int level) {
         regions.push_back(members[i]);
       }
     const std::uint64_t first_above = above_[l].size();
+    above_[l].insert(above_[l].end(), std::begin(begin), std::end(begin));
     for (std::uint32_t i = 0; i < members.size(); ++i) above_[l].push_back(numbers[sets.find(i)]);
     add_node(level, regions, first_above, has_closed_below);
   }
@@ -197,18 +213,11 @@ std::uint64_t Regions::size(int level, std::uint32_t node, std::uint32_t region)
 
 std::uint32_t Regions::region_above(int level, std::uint32_t node, int child,
                                     std::uint32_t region) const {
-  if (node == kNoCell) return 0;
-  std::uint64_t places[8];
-  find_places_above(level, node, places);
-  return above_[static_cast<std::size_t>(level)][places[child] + region];
+  return node == kNoCell ? 0 : regions_above(level, node).of(child, region);
 }
 
-void Regions::find_places_above(int level, std::uint32_t node, std::uint64_t (&places)[8]) const {
-  std::uint64_t place = record(level, node).first_above;
-  for (int child = 0; child < 8; ++child) {
-    places[child] = place;
-    place += counts(level + 1, source_.child(level, node, child)).open;
-  }
+Regions::RegionsAbove Regions::regions_above(int level, std::uint32_t node) const {
+  return {above_[static_cast<std::size_t>(level)].data() + record(level, node).first_above};
 }
 
 Vec3i Regions::place_in(int level, std::uint32_t node, std::uint32_t region) const {
@@ -269,15 +278,24 @@ Regions::List Regions::touches_of_nodes(int level, std::uint32_t a, std::uint32_
   const std::uint32_t number = pairs.keys.add({a, b, static_cast<std::uint32_t>(direction)});
   if (number < pairs.lists.size()) return pairs.lists[number];
   pairs.lists.push_back({});
-  const CountedVector<std::uint32_t>& above = above_[static_cast<std::size_t>(level)];
-  std::uint64_t places_a[8], places_b[8];
-  if (a != kNoCell) find_places_above(level, a, places_a);
-  if (b != kNoCell) find_places_above(level, b, places_b);
+  // A whole cell has one region, of which each child is a part.
+  static constexpr std::uint32_t kWhole[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 0, 0, 0, 0, 0, 0, 0, 0};
+  const RegionsAbove above_a = a == kNoCell ? RegionsAbove{kWhole} : regions_above(level, a);
+  const RegionsAbove above_b = b == kNoCell ? RegionsAbove{kWhole} : regions_above(level, b);
   std::vector<Touch> below, touches;
+  const std::uint64_t most = std::uint64_t{counts(level, a).open} * counts(level, b).open;
   for (const ChildPair& pair :
        child_pairs(neighbours_).across[static_cast<std::size_t>(direction)]) {
     const std::uint32_t child_a = source_.child(level, a, pair.a),
                         child_b = source_.child(level, b, pair.b);
+    const auto touch_above = [&](Touch touch) {
+      return Touch{above_a.of(pair.a, touch.first), above_b.of(pair.b, touch.second)};
+    };
+    const std::uint64_t pairs_below = std::uint64_t{above_a.count(pair.a)} * above_b.count(pair.b);
+    if (pairs_below == 0) continue;
+    if (pairs_below == 1 &&
+        std::find(touches.begin(), touches.end(), touch_above({0, 0})) != touches.end())
+      continue;
     below.clear();
     if (pair.is_swapped)
       add_touches(level + 1, child_b, child_a, pair.direction, below);
@@ -285,12 +303,13 @@ Regions::List Regions::touches_of_nodes(int level, std::uint32_t a, std::uint32_
       add_touches(level + 1, child_a, child_b, pair.direction, below);
     for (Touch touch : below) {
       if (pair.is_swapped) std::swap(touch.first, touch.second);
-      touches.push_back({a == kNoCell ? 0 : above[places_a[pair.a] + touch.first],
-                         b == kNoCell ? 0 : above[places_b[pair.b] + touch.second]});
+      touches.push_back(touch_above(touch));
     }
+    if (touches.size() < most) continue;
+    remove_copies(touches);
+    if (touches.size() == most) break;
   }
-  std::sort(touches.begin(), touches.end());
-  touches.erase(std::unique(touches.begin(), touches.end()), touches.end());
+  remove_copies(touches);
   const List list{pairs.touches.size(), static_cast<std::uint32_t>(touches.size())};
   pairs.touches.insert(pairs.touches.end(), touches.begin(), touches.end());
   return pairs.lists[number] = list;

@@ -63,6 +63,16 @@ class Regions {
     std::uint64_t size = 0;
     std::uint8_t sides = 0;  ///< Bit 2a: touches the low side of axis a, 2a + 1: the high one.
   };
+  /// Of a node: where the open regions of each child begin among those of all children, then their
+  /// number, and then the region of the node that each of them belongs to.
+  struct RegionsAbove {
+    const std::uint32_t* words;
+
+    std::uint32_t count(int child) const { return words[child + 1] - words[child]; }
+    std::uint32_t of(int child, std::uint32_t region) const {
+      return words[9 + words[child] + region];
+    }
+  };
   struct List {
     std::uint64_t begin = 0;
     std::uint32_t count = 0;
@@ -78,9 +88,7 @@ class Regions {
   void number_nodes(const SvdagView& dag);
   void find_blocks(const SvdagView& dag);
   void find_nodes(const SvdagView& dag, int level);
-  /// Sets places[child] to where in `above_` the regions of each child begin. `node` may be kNoCell
-  /// if is_whole(node).
-  void find_places_above(int level, std::uint32_t node, std::uint64_t (&places)[8]) const;
+  RegionsAbove regions_above(int level, std::uint32_t node) const;
   /// Adds a node of `level` with these regions, the open ones first.
   void add_node(int level, const std::vector<Region>& regions, std::uint64_t first_above,
                 bool has_closed_below);
@@ -104,7 +112,7 @@ class Regions {
   std::vector<std::uint64_t> level_begin_;
   std::vector<CountedVector<Node>> nodes_;
   std::vector<CountedVector<Region>> regions_;
-  /// For each node above the leaf blocks and each open region of its children: the region.
+  /// For each node above the leaf blocks: the words of its RegionsAbove.
   std::vector<CountedVector<std::uint32_t>> above_;
   CountedVector<std::uint64_t> block_voxels_;
   std::vector<Pairs> pairs_;
