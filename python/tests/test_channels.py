@@ -184,6 +184,9 @@ def test_rows_and_las_files_have_the_means_of_their_points(tmp_path):
     rows["x"], rows["y"], rows["z"] = places.T
     rows["heat"], rows["wide"] = rng.normal(0, 50, 900), intensity
     np.save(tmp_path / "p.npy", rows)
+    with open(tmp_path / "p.csv", "w") as csv:
+        csv.write("x,y,z,heat,wide\n")
+        csv.writelines(f"{x},{y},{z},{float(h)!r},{w}\n" for x, y, z, h, w in rows.tolist())
     in_voxel = {}
     for row, place in enumerate(places):
         in_voxel.setdefault(tuple(place), []).append(row)
@@ -197,3 +200,7 @@ def test_rows_and_las_files_have_the_means_of_their_points(tmp_path):
     means = [np.float32(sum(sorted(rows["heat"][in_voxel[tuple(v)]].astype(float))) / len(in_voxel[tuple(v)])) for v in voxels]
     assert npy.channel("heat").tolist() == means
     assert np.abs(npy.channel("near").astype(float) - npy.channel("heat")).max() <= 0.5
+    csv = voxdag.import_file(tmp_path / "p.csv", pitch=1.0, channels={"heat": "heat", "wide": "5"})
+    assert np.array_equal(csv.coords(), voxels) and csv.channel("heat").tolist() == means
+    exact = [np.float32(intensity[in_voxel[tuple(v)]].mean()) for v in voxels]
+    assert csv.channel("wide").tolist() == exact
