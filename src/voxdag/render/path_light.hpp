@@ -12,8 +12,9 @@
 /// facets that the viewer sees, from which the parts of the mirrored light are taken as for the
 /// mirrored sky, and the diffuse one. One is chosen with the probability of the light that it
 /// reflects. So a path carries the luminance that the surface reflects of light from everywhere: a
-/// white one never loses light. The mean over 16 facets makes the light that rough metal gains
-/// depend on chance a little; all else is unbiased.
+/// white one never loses light. Two things are biased: the light that rough metal gains is taken
+/// from 16 facets, and the highlights that rough or diffuse surfaces see (caustics) are blurred as
+/// these surfaces spread light.
 ///
 /// The first directions come from the table of occlusion rays. Later ones, and the points on
 /// lights, are hashes of pixel, sample, path and bounce, so that every machine traces the same
@@ -62,17 +63,25 @@ struct PathMirror {
   /// Of the way on: unit length; zero: diffuse.
   Vec3f direction;
   Vec3f factor;  ///< The part of the light from there that is reflected, by its probability.
+
+  /// Returns whether the path goes on by the diffuse way.
+  VOXDAG_HD bool is_diffuse() const { return !is_on || !(dot(direction, direction) > 0); }
+  /// Returns the least alpha of highlights that the path meets behind this surface.
+  VOXDAG_HD float blur() const {
+    return is_diffuse() ? MicrofacetRule::kCausticAlpha : numbers.roughness * numbers.roughness;
+  }
 };
 
 /// The vertex at which a path is.
 struct PathVertex {
   SurfacePoint point;
-  SightLine line;       ///< The next line of the path, in world units.
-  ViewSample seen;      ///< The surface on that line, once it is cast.
-  PathMirror mirror;    ///< At `point`, if surfaces may mirror.
-  Vec3f carried;        ///< The part of the radiance from here that arrives at the view sample.
-  Vec3f arriving;       ///< Irradiance of the current light's sample.
-  bool is_lit = false;  ///< The sample is above the surface.
+  SightLine line;         ///< The next line of the path, in world units.
+  ViewSample seen;        ///< The surface on that line, once it is cast.
+  PathMirror mirror;      ///< At `point`, if surfaces may mirror.
+  Vec3f carried;          ///< The part of the radiance from here that arrives at the view sample.
+  Vec3f arriving;         ///< Irradiance of the current light's sample.
+  bool is_lit = false;    ///< The sample is above the surface.
+  float least_alpha = 0;  ///< Of highlights at `point`.
 };
 
 /// Arrays for trace_paths(), indexed by the tile's pixel.
@@ -120,11 +129,13 @@ VOXDAG_HD inline PathMirror path_mirror(const RenderSetup& setup, const ViewSamp
   return mirror;
 }
 
-/// Returns the radiance that a mirror reflects along the path, times pi, per irradiance from a
-/// light.
-VOXDAG_HD inline Vec3f reflected_by(const PathMirror& mirror, Vec3f normal, Vec3f to_light) {
+/// Returns the radiance that the mirror at a vertex reflects along the path, times pi, per
+/// irradiance from a light.
+VOXDAG_HD inline Vec3f reflected_at(const PathVertex& vertex, Vec3f to_light) {
+  const PathMirror& mirror = vertex.mirror;
   float fresnel = 0;
-  const float lobe = ggx_lobe(highlight_view(normal, mirror.to_viewer, mirror.numbers.roughness),
+  const float lobe = ggx_lobe(highlight_view(vertex.point.normal, mirror.to_viewer,
+                                             mirror.numbers.roughness, vertex.least_alpha),
                               to_light, fresnel);
   return diffuse_albedo(mirror.numbers, mirror.color, mirror.parts) +
          mirror_color(mirror.numbers, mirror.color, mirror.parts, fresnel) *
@@ -146,7 +157,7 @@ VOXDAG_HD inline CastRay path_ray(const RenderSetup& setup, const ViewSample& sa
     limit_to(setup.section, ray);
     return ray;
   };
-  if (vertex.mirror.is_on && dot(vertex.mirror.direction, vertex.mirror.direction) > 0)
+  if (!vertex.mirror.is_diffuse())
     return {make_ray(vertex.mirror.direction, 0), {point.cell_side, 0}};
   if (bounce == 0) return occlusion_ray(setup.tables, 1, 0, point, pixel, path, make_ray);
   PathRandom random(x, y, path, bounce);
@@ -177,8 +188,7 @@ VOXDAG_HD inline int add_path_light(const Caster& caster, const RenderSetup& set
         if (vertex.is_lit && vertex.mirror.is_on)
           vertex.arriving =
               vertex.arriving *
-              reflected_by(vertex.mirror, vertex.point.normal,
-                           normalized(direction_from_surface(light, vertex.point, sample)));
+              reflected_at(vertex, normalized(direction_from_surface(light, vertex.point, sample)));
         CastRay ray;
         if (!vertex.is_lit || !setup.settings.shadows) return ray;
         const LightInterval interval = light_interval(light);
@@ -226,6 +236,7 @@ VOXDAG_HD inline int trace_paths(const Nodes& nodes, const Caster& caster, const
       vertex.point = scratch.points[pixel];
       vertex.carried = {1, 1, 1};
       vertex.mirror = {};
+      vertex.least_alpha = MicrofacetRule::kLeastAlpha;
       if (has_mirrors) {
         const Vec3d view = normalized(pixel_direction(setup, tile, pixel));
         vertex.mirror = path_mirror(setup, scratch.samples[pixel], -static_cast<Vec3f>(view),
@@ -263,6 +274,8 @@ VOXDAG_HD inline int trace_paths(const Nodes& nodes, const Caster& caster, const
               paths.gathered[pixel] + vertex.carried * sky_radiance(setup.sky, out);
         } else if (bounce < setup.settings.bounces) {
           vertex.point = make_surface_point(nodes, setup, vertex.seen, vertex.line);
+          const float blur = vertex.mirror.blur();
+          if (blur > vertex.least_alpha) vertex.least_alpha = blur;
           if (has_mirrors)
             vertex.mirror = path_mirror(setup, vertex.seen,
                                         -static_cast<Vec3f>(normalized(vertex.line.direction)),
