@@ -14,13 +14,18 @@ namespace {
 using Path = std::filesystem::path;
 using voxdag::LabelRequest;
 using Open = std::unique_ptr<voxdag::VoxelSource> (*)(const Path&, const LabelRequest&);
+/// The reader without channels.
+template <auto kOpen>
+std::unique_ptr<voxdag::VoxelSource> with_fields(const Path& path, const LabelRequest& labels) {
+  return kOpen(path, labels, {});
+}
 constexpr Open kReaders[] = {
     [](const Path& path, const LabelRequest& labels) {
       return voxdag::open_ply_points(path, false, labels);
     },
-    voxdag::open_las_points,
-    voxdag::open_pcd_points,
-    voxdag::open_xyz_points,
+    with_fields<voxdag::open_las_points>,
+    with_fields<voxdag::open_pcd_points>,
+    with_fields<voxdag::open_xyz_points>,
     [](const Path& path, const LabelRequest& labels) {
       return voxdag::open_npy_points(path, voxdag::read_npy_start(path), labels);
     },

@@ -20,6 +20,7 @@
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/formats/presentation.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/mesh/has_colors.hpp"
 #include "voxdag/mesh/place_vertices.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
 
@@ -38,10 +39,29 @@ std::optional<SolidRule> rule_of(const py::object& solid) {
   }
 }
 
-/// Builds the DAG of a mesh, as `voxdag build` does.
+/// Returns the options of the channels that the argument `channels` names: a name, several in a
+/// text as of `voxdag build --channel`, or a list of names.
+AttributeOptions with_channels(const py::object& channels, AttributeOptions options) {
+  if (channels.is_none()) return options;
+  if (py::isinstance<py::str>(channels)) return with_channels(channels.attr("split")(","), options);
+  for (const py::handle name : channels) {
+    const std::string word = py::str(name.cast<py::str>().attr("strip")());
+    if (word == "metallic")
+      options.metallic = true;
+    else if (word == "roughness")
+      options.roughness = true;
+    else
+      throw py::value_error("\"" + word + "\" is neither metallic nor roughness");
+  }
+  return options;
+}
+
+/// Builds the DAG of a mesh, as `voxdag build` does. `options` say which attributes. Adds warnings
+/// about textures.
 DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
-                      const std::optional<SolidRule>& solid, bool colors, bool cuts_alpha,
-                      const std::string& name, const Presentation& presentation, Work work) {
+                      const std::optional<SolidRule>& solid, AttributeOptions options,
+                      bool cuts_alpha, const std::string& name, const Presentation& presentation,
+                      std::vector<std::string>& warnings, Work work) {
   const Mesh& mesh = source.mesh;
   VdagMetadata metadata;
   metadata.presentation = presentation;
@@ -55,16 +75,15 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
     dag = fill_solid(cover.view(), mesh, metadata.grid, {*solid}, work);
   }
   DagAttributes attributes;
-  if (colors) {
-    const SurfaceShading shading(mesh, source.appearance, nullptr, work);
+  const bool has_channels = options.metallic || options.roughness;
+  if (options.colors || has_channels) {
+    const SurfaceShading shading(mesh, source.appearance, &warnings, work, has_channels);
     auto cut =
         cuts_alpha ? cut_alpha(mesh, metadata.grid, dag.view(), shading, work) : std::nullopt;
     if (cut) {
       dag = std::move(*cut);
       metadata.build["alpha"] = "cut";
     }
-    AttributeOptions options;
-    options.colors = true;
     options.finest_level = metadata.grid.levels;
     if (solid) {
       AttributeOptions exact = options;
@@ -76,7 +95,8 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
       attributes = build_attributes(mesh, metadata.grid, dag.view(), &shading, options, work);
     }
     metadata.attributes.resolution = metadata.grid.resolution();
-    metadata.attributes.colors = {options.color_bound, attributes.color_errors.squared};
+    if (options.colors)
+      metadata.attributes.colors = {options.color_bound, attributes.color_errors.squared};
   }
   return std::make_shared<Dag>(DagModel(std::move(dag), std::move(attributes), metadata));
 }
@@ -129,28 +149,42 @@ DagPointer build(const ArrayLike& vertices, const ArrayLike& faces,
   const std::optional<SolidRule> rule = rule_of(solid);
   const MeshWithAppearance source = mesh_of(vertices, faces, colors);
   return run_work([&](Work work) {
-    return build_mesh(source, grid, rule, colors.has_value(), false, "arrays", {}, work);
+    AttributeOptions attributes;
+    attributes.colors = colors.has_value();
+    std::vector<std::string> none;  // There are no textures.
+    return build_mesh(source, grid, rule, attributes, false, "arrays", {}, none, work);
   });
 }
 
 DagPointer build_file(const std::filesystem::path& path, std::optional<std::int64_t> resolution,
                       std::optional<double> pitch, std::optional<Bounds> bounds,
-                      const py::object& solid, bool colors, const std::string& alpha) {
+                      const py::object& solid, bool colors, const std::string& alpha,
+                      const py::object& channels) {
   if (alpha != "cut" && alpha != "keep") throw py::value_error("alpha must be \"cut\" or \"keep\"");
   const GridRequest grid = grid_request(resolution, pitch, bounds);
   const std::optional<SolidRule> rule = rule_of(solid);
-  return run_work([&](Work work) {
+  AttributeOptions attributes = with_channels(channels, {});
+  attributes.colors = colors;
+  const bool has_channels = attributes.metallic || attributes.roughness;
+  std::vector<std::string> warnings;
+  DagPointer dag = run_work([&](Work work) {
     const ReadOptions options{.work = work};
     MeshWithAppearance source;
-    if (colors)
+    if (colors || has_channels)
       source = read_mesh_with_appearance(path, options);
     else
       source.mesh = read_mesh(path, options);
+    if (has_channels && !has_metallic_roughness(source.appearance))
+      warnings.push_back(path.string() + ": has no metallic and no roughness: channels stores 0 " +
+                         "and 1 for all cells");
     return with_file_name(path.string(), [&] {
-      return build_mesh(source, grid, rule, colors, alpha == "cut", path.filename().string(),
-                        presentation_of({}, mesh_custom(path, options)), work);
+      return build_mesh(source, grid, rule, attributes, colors && alpha == "cut",
+                        path.filename().string(), presentation_of({}, mesh_custom(path, options)),
+                        warnings, work);
     });
   });
+  for (const std::string& warning : warnings) warn(warning);
+  return dag;
 }
 
 DagPointer open(const std::filesystem::path& path) {
@@ -170,13 +204,16 @@ void add_makers(py::module_& module) {
   module.def("build_mesh", &build_file, py::arg("path"), py::kw_only(),
              py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
              py::arg("solid") = none, py::arg("colors") = false, py::arg("alpha") = "cut",
+             py::arg("channels") = none,
              R"(Builds the DAG of the voxels that the triangles of a mesh file meet.
 
 path: .obj, .ply, .stl, .glb and others (docs/meshes.md).
 resolution, pitch, bounds, solid: as for build().
 colors: give voxels the colours and textures of the mesh.
 alpha: "cut" leaves out transparent voxels if colors, "keep" sets them.
-Raises OSError if the file cannot be read.)");
+channels: "metallic", "roughness", or both in a list: numbers of the materials of glTF and OBJ, from 0
+to 255 (docs/attributes.md#metallic-and-roughness).
+Raises OSError if the file cannot be read; a texture that cannot be read becomes a warning.)");
 }
 
 }  // namespace voxdag::python

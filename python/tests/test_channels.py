@@ -101,6 +101,37 @@ def test_coarser_grids_keep_the_means_of_their_cells(resolution):
         np.testing.assert_allclose(stored.astype(float), means, rtol=0 if name == "count" else 1e-5, atol=0 if name == "count" else 1e-5)
 
 
+@pytest.fixture
+def metal(tmp_path):
+    """Two triangles far from each other: a metal, and a material without these numbers."""
+    (tmp_path / "a.mtl").write_text("newmtl metal\nPm 1\nPr 0.2\nKd 1 0.8 0.4\nnewmtl dull\n")
+    (tmp_path / "a.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 4\nv 1 0 4\nv 0 1 4\n"
+                                    "usemtl metal\nf 1 2 3\nusemtl dull\nf 4 5 6\n")
+    return tmp_path / "a.obj"
+
+
+@pytest.mark.parametrize("options", [{}, {"colors": True}, {"solid": "flood"}])
+def test_meshes_have_the_channels_of_their_materials(metal, options):
+    dag = voxdag.build_mesh(metal, resolution=32, channels=["metallic", "roughness"], **options)
+    assert dag == voxdag.build_mesh(metal, resolution=32, **options)
+    assert [(row["name"], row["kind"]) for row in dag.channels] == [("metallic", "u8"), ("roughness", "u8")]
+    assert dag.info["has_colors"] == ("colors" in options)
+    is_metal = dag.coords()[:, 2] < 16
+    assert np.array_equal(dag.channel("metallic"), np.where(is_metal, 255, 0))
+    assert np.array_equal(dag.channel("roughness"), np.where(is_metal, 51, 255))
+
+
+def test_channels_of_meshes_have_names(metal):
+    for names in ("roughness", ["roughness"], ("roughness",)):
+        assert [row["name"] for row in voxdag.build_mesh(metal, resolution=8, channels=names).channels] == ["roughness"]
+    assert len(voxdag.load(metal, resolution=8, channels="metallic,roughness").channels) == 2
+    with pytest.raises(ValueError, match='"gloss" is neither metallic nor roughness'):
+        voxdag.build_mesh(metal, resolution=8, channels=["metallic", "gloss"])
+    (metal.parent / "a.mtl").write_text("newmtl metal\nnewmtl dull\n")
+    with pytest.warns(UserWarning, match="has no metallic and no roughness"):
+        voxdag.build_mesh(metal, resolution=8, channels="metallic")
+
+
 def test_exports_come_back(tmp_path):
     rng = np.random.default_rng(6)
     coords = np.unique(rng.integers(0, 30, (300, 3)), axis=0)
@@ -153,6 +184,9 @@ def test_rows_and_las_files_have_the_means_of_their_points(tmp_path):
     rows["x"], rows["y"], rows["z"] = places.T
     rows["heat"], rows["wide"] = rng.normal(0, 50, 900), intensity
     np.save(tmp_path / "p.npy", rows)
+    with open(tmp_path / "p.csv", "w") as csv:
+        csv.write("x,y,z,heat,wide\n")
+        csv.writelines(f"{x},{y},{z},{float(h)!r},{w}\n" for x, y, z, h, w in rows.tolist())
     in_voxel = {}
     for row, place in enumerate(places):
         in_voxel.setdefault(tuple(place), []).append(row)
@@ -166,3 +200,7 @@ def test_rows_and_las_files_have_the_means_of_their_points(tmp_path):
     means = [np.float32(sum(sorted(rows["heat"][in_voxel[tuple(v)]].astype(float))) / len(in_voxel[tuple(v)])) for v in voxels]
     assert npy.channel("heat").tolist() == means
     assert np.abs(npy.channel("near").astype(float) - npy.channel("heat")).max() <= 0.5
+    csv = voxdag.import_file(tmp_path / "p.csv", pitch=1.0, channels={"heat": "heat", "wide": "5"})
+    assert np.array_equal(csv.coords(), voxels) and csv.channel("heat").tolist() == means
+    exact = [np.float32(intensity[in_voxel[tuple(v)]].mean()) for v in voxels]
+    assert csv.channel("wide").tolist() == exact

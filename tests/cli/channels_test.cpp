@@ -201,9 +201,18 @@ TEST_F(Channels, WhatIsWrongIsSaid) {
   expect_failure(import({"--channel", "scalar_T,kind=u8"}), 1,
                  "channel 'scalar_T': has the value -4, and the kind u8");
   write_text(dir_ / "p.csv", "0,0,0,1\n1,0,0,2\n");
-  expect_failure(run_voxdag({"import", path("p.csv"), "--voxel-size", "1", "--channel", "a", "-o",
-                             path("n.vdag")}),
-                 1, "has a format of which no channels are read");
+  const auto import_of = [&](const std::string& file, const std::string& field) {
+    return run_voxdag({"import", path(file), "--channel", field, "-o", path("n.vdag")});
+  };
+  expect_failure(import_of("p.csv", "a"), 1, "has no field 'a'; its fields are without names");
+  EXPECT_EQ(import_of("p.csv", "4:as a").status, 0);
+  const nlohmann::json list = channels("n.vdag");
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].at("name"), "a");
+  EXPECT_EQ(list[0].at("greatest"), 2);
+  write_text(dir_ / "b.binvox",
+             "#binvox 1\ndim 2 2 2\ntranslate 0 0 0\nscale 1\ndata\n" + std::string("\x01\x08", 2));
+  expect_failure(import_of("b.binvox", "value"), 1, "has a format of which no channels are read");
 }
 
 /// A box with a metal and a dull side.

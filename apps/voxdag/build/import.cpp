@@ -307,8 +307,9 @@ void add_import_command(const Command& program, Session& session) {
       .not_with(keep);
   command.repeated(
       "--channel", arguments->channels, parse_channel, "FIELD[:as NAME][,bound=B][,kind=KIND]",
-      "Keep a field as a channel, up to 16: a property of .ply, a field of .npy, the intensity "
-      "of .las, or value, the numbers of a volume. A voxel has the mean of its points. B is the "
+      "Keep a field as a channel, up to 16: a property of .ply, a field of .pcd or .npy, the "
+      "intensity of .las, a column of a text by its name or number, a grid of .vdb, or value, the "
+      "numbers of a volume. A voxel has the mean of its points. B is the "
       "largest error of a stored value (default: lossless); KIND is u8, u16, i16, i32 or f32 "
       "(default: that of the field, f32 with a bound)");
   command.flag("--points", arguments->splats_are_points,

@@ -79,6 +79,13 @@ VOXDAG_HD inline void trace_shadow_rays(const Caster& caster, const RenderSetup&
       });
 }
 
+/// Returns the view of a surface for highlights, whose alpha is at least `least`.
+VOXDAG_HD inline FacetView highlight_view(Vec3f normal, Vec3f to_viewer, float roughness,
+                                          float least) {
+  const float alpha = roughness * roughness;
+  return facet_view(normal, to_viewer, alpha > least ? alpha : least);
+}
+
 /// Returns the light of a batch's unoccluded samples that a pixel's surface mirrors, summed, per
 /// unit of the light's colour.
 template <class Scratch>
@@ -90,10 +97,8 @@ VOXDAG_HD inline Vec3f microfacet_shine(const RenderSetup& setup, const LightBat
   const ViewSample& seen = scratch.samples[pixel];
   const MetallicRoughness numbers = seen.metallic_roughness;
   const MirroredParts parts = sample_mirror(setup, seen, to_viewer, x, y, sample_index, nullptr);
-  const float alpha = numbers.roughness * numbers.roughness;
   const FacetView view =
-      facet_view(point.normal, to_viewer,
-                 alpha > MicrofacetRule::kLeastAlpha ? alpha : MicrofacetRule::kLeastAlpha);
+      highlight_view(point.normal, to_viewer, numbers.roughness, MicrofacetRule::kLeastAlpha);
   Vec3f shine;
   for (int i = 0; i < batch.count; ++i) {
     if ((scratch.visible[pixel] >> i & 1u) == 0) continue;

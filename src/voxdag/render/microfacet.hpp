@@ -23,6 +23,9 @@ struct MicrofacetRule {
   static constexpr float kF0 = 0.04f;  ///< Mirrored part from straight above, without metal.
   /// The least alpha of highlights, so that those of the sun are not smaller than pixels.
   static constexpr float kLeastAlpha = 0.02f;
+  /// The least alpha of highlights that a path sees from a diffuse surface: caustics are blurred,
+  /// so that few paths do not show them as bright dots.
+  static constexpr float kCausticAlpha = 0.3f;
   /// The least cosine between normal and viewer: fitted normals may turn away.
   static constexpr float kLeastCosine = 0.05f;
   static constexpr int kSamples = 16;  ///< Directions of the mirrored sky per view sample.

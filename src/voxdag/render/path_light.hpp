@@ -8,6 +8,14 @@
 /// lamp there, one shadow ray each, and goes on in a new direction. Source: J. Kajiya, "The
 /// Rendering Equation", SIGGRAPH 1986.
 ///
+/// A surface with a metallic and a roughness number (microfacet.hpp) has 17 ways on: 16 random
+/// facets that the viewer sees, from which the parts of the mirrored light are taken as for the
+/// mirrored sky, and the diffuse one. One is chosen with the probability of the light that it
+/// reflects. So a path carries the luminance that the surface reflects of light from everywhere: a
+/// white one never loses light. Two things are biased: the light that rough metal gains is taken
+/// from 16 facets, and the highlights that rough or diffuse surfaces see (caustics) are blurred as
+/// these surfaces spread light.
+///
 /// The first directions come from the table of occlusion rays. Later ones, and the points on
 /// lights, are hashes of pixel, sample, path and bounce, so that every machine traces the same
 /// paths.
@@ -46,14 +54,34 @@ VOXDAG_HD inline Vec3f cosine_direction(PathRandom& random) {
   return {0, 0, 1};
 }
 
+/// A surface with a metallic and a roughness number on a path, and how the path goes on there.
+struct PathMirror {
+  bool is_on = false;  ///< Otherwise the surface is diffuse alone.
+  MetallicRoughness numbers;
+  Vec3f color, to_viewer;
+  MirroredParts parts;
+  /// Of the way on: unit length; zero: diffuse.
+  Vec3f direction;
+  Vec3f factor;  ///< The part of the light from there that is reflected, by its probability.
+
+  /// Returns whether the path goes on by the diffuse way.
+  VOXDAG_HD bool is_diffuse() const { return !is_on || !(dot(direction, direction) > 0); }
+  /// Returns the least alpha of highlights that the path meets behind this surface.
+  VOXDAG_HD float blur() const {
+    return is_diffuse() ? MicrofacetRule::kCausticAlpha : numbers.roughness * numbers.roughness;
+  }
+};
+
 /// The vertex at which a path is.
 struct PathVertex {
   SurfacePoint point;
-  SightLine line;       ///< The next line of the path, in world units.
-  ViewSample seen;      ///< The surface on that line, once it is cast.
-  Vec3f carried;        ///< The part of the radiance from here that arrives at the view sample.
-  Vec3f arriving;       ///< Irradiance of the current light's sample.
-  bool is_lit = false;  ///< The sample is above the surface.
+  SightLine line;         ///< The next line of the path, in world units.
+  ViewSample seen;        ///< The surface on that line, once it is cast.
+  PathMirror mirror;      ///< At `point`, if surfaces may mirror.
+  Vec3f carried;          ///< The part of the radiance from here that arrives at the view sample.
+  Vec3f arriving;         ///< Irradiance of the current light's sample.
+  bool is_lit = false;    ///< The sample is above the surface.
+  float least_alpha = 0;  ///< Of highlights at `point`.
 };
 
 /// Arrays for trace_paths(), indexed by the tile's pixel.
@@ -62,6 +90,57 @@ struct PathScratch {
   PathVertex vertices[kPixels];
   Vec3f gathered[kPixels];  ///< Radiance that the pixel's paths brought, summed.
 };
+
+/// Returns the surface of a view sample on a path. `to_viewer` has unit length.
+VOXDAG_HD inline PathMirror path_mirror(const RenderSetup& setup, const ViewSample& sample,
+                                        Vec3f to_viewer, PathRandom random) {
+  PathMirror mirror;
+  if (is_dull(sample.metallic_roughness)) return mirror;
+  mirror.is_on = true;
+  mirror.numbers = sample.metallic_roughness;
+  mirror.color = sample.albedo;
+  mirror.to_viewer = to_viewer;
+  const FacetSamples facets =
+      facet_samples(setup, sample, to_viewer, samples_of_hash(setup.tables, random.next()), 0);
+  const MirroredParts parts = mirror.parts = facets.parts();
+  const auto mirrored_by = [&](const MirroredRay& ray) {
+    return mirror_color(mirror.numbers, mirror.color, parts, ray.fresnel) *
+           (ray.weight / FacetSamples::kCount);
+  };
+  const Vec3f diffuse = diffuse_albedo(mirror.numbers, mirror.color, parts);
+  float total = luminance(diffuse);
+  for (int i = 0; i < FacetSamples::kCount; ++i) total += luminance(mirrored_by(facets.ray(i)));
+  float rest = 0.5f * (1 + random.next_signed()) * total - luminance(diffuse);
+  if (rest < 0 || !(total > 0)) {
+    mirror.factor = luminance(diffuse) > 0 ? diffuse * (total / luminance(diffuse)) : Vec3f{};
+    return mirror;
+  }
+  for (int i = 0; i < FacetSamples::kCount; ++i) {
+    const MirroredRay ray = facets.ray(i);
+    const Vec3f mirrored = mirrored_by(ray);
+    const float share = luminance(mirrored);
+    if (!(share > 0)) continue;
+    // Rounding may leave some rest after the last one.
+    mirror.direction = facets.direction(ray, sample.face);
+    mirror.factor = mirrored * (total / share);
+    rest -= share;
+    if (rest < 0) break;
+  }
+  return mirror;
+}
+
+/// Returns the radiance that the mirror at a vertex reflects along the path, times pi, per
+/// irradiance from a light.
+VOXDAG_HD inline Vec3f reflected_at(const PathVertex& vertex, Vec3f to_light) {
+  const PathMirror& mirror = vertex.mirror;
+  float fresnel = 0;
+  const float lobe = ggx_lobe(highlight_view(vertex.point.normal, mirror.to_viewer,
+                                             mirror.numbers.roughness, vertex.least_alpha),
+                              to_light, fresnel);
+  return diffuse_albedo(mirror.numbers, mirror.color, mirror.parts) +
+         mirror_color(mirror.numbers, mirror.color, mirror.parts, fresnel) *
+             (lobe * std::numbers::pi_v<float>);
+}
 
 /// Returns the next ray of a path, and sets vertex.line. `path` counts the pixel's paths over all
 /// samples.
@@ -78,6 +157,8 @@ VOXDAG_HD inline CastRay path_ray(const RenderSetup& setup, const ViewSample& sa
     limit_to(setup.section, ray);
     return ray;
   };
+  if (!vertex.mirror.is_diffuse())
+    return {make_ray(vertex.mirror.direction, 0), {point.cell_side, 0}};
   if (bounce == 0) return occlusion_ray(setup.tables, 1, 0, point, pixel, path, make_ray);
   PathRandom random(x, y, path, bounce);
   return {make_ray(around_normal(point, cosine_direction(random)), 0), {point.cell_side, 0}};
@@ -104,6 +185,10 @@ VOXDAG_HD inline int add_path_light(const Caster& caster, const RenderSetup& set
             static_cast<int>(random.next() % static_cast<std::uint32_t>(setup.tables.light_count)));
         vertex.arriving = light.color * sample.weight;
         vertex.is_lit = sample.weight > 0;
+        if (vertex.is_lit && vertex.mirror.is_on)
+          vertex.arriving =
+              vertex.arriving *
+              reflected_at(vertex, normalized(direction_from_surface(light, vertex.point, sample)));
         CastRay ray;
         if (!vertex.is_lit || !setup.settings.shadows) return ray;
         const LightInterval interval = light_interval(light);
@@ -124,7 +209,8 @@ VOXDAG_HD inline int add_path_light(const Caster& caster, const RenderSetup& set
 }
 
 /// Sets paths.gathered and scratch.open (the paths that leave the scene at once) for the pixels
-/// that show something. Returns the number of rays.
+/// that show something. What arrives is gathered, divided by pi; at mirrors what they reflect of
+/// it. Returns the number of rays.
 template <class Nodes, class Caster, class Scratch, class Paths>
 VOXDAG_HD inline int trace_paths(const Nodes& nodes, const Caster& caster, const RenderSetup& setup,
                                  const ViewTile& tile, Scratch& scratch, Paths& paths) {
@@ -135,14 +221,28 @@ VOXDAG_HD inline int trace_paths(const Nodes& nodes, const Caster& caster, const
     scratch.pixels[pixel] =
         pixel_samples(setup.tables, tile.x + tile.column(pixel), tile.y + tile.row(pixel), 0);
   }
+  const auto random_of = [&](int pixel, int path, int bounce) {
+    // Directions and lights have the numbers from 0 on.
+    return PathRandom(tile.x + tile.column(pixel), tile.y + tile.row(pixel), path, -1 - bounce);
+  };
+  const bool has_mirrors = setup.has_mirrors();
   int rays = 0;
   for (int k = 0; k < count; ++k) {
     const int path = tile.sample_index * count + k;
     int active = 0;
     for (int pixel = 0; pixel < pixels; ++pixel) {
       if (!scratch.points[pixel].is_hit()) continue;
-      paths.vertices[pixel].point = scratch.points[pixel];
-      paths.vertices[pixel].carried = {1, 1, 1};
+      PathVertex& vertex = paths.vertices[pixel];
+      vertex.point = scratch.points[pixel];
+      vertex.carried = {1, 1, 1};
+      vertex.mirror = {};
+      vertex.least_alpha = MicrofacetRule::kLeastAlpha;
+      if (has_mirrors) {
+        const Vec3d view = normalized(pixel_direction(setup, tile, pixel));
+        vertex.mirror = path_mirror(setup, scratch.samples[pixel], -static_cast<Vec3f>(view),
+                                    random_of(pixel, path, 0));
+        if (vertex.mirror.is_on) vertex.carried = vertex.mirror.factor;
+      }
       scratch.active[active++] = pixel;
     }
     for (int bounce = 0; active > 0; ++bounce) {
@@ -174,13 +274,23 @@ VOXDAG_HD inline int trace_paths(const Nodes& nodes, const Caster& caster, const
               paths.gathered[pixel] + vertex.carried * sky_radiance(setup.sky, out);
         } else if (bounce < setup.settings.bounces) {
           vertex.point = make_surface_point(nodes, setup, vertex.seen, vertex.line);
-          vertex.carried = vertex.carried * vertex.seen.albedo;
+          const float blur = vertex.mirror.blur();
+          if (blur > vertex.least_alpha) vertex.least_alpha = blur;
+          if (has_mirrors)
+            vertex.mirror = path_mirror(setup, vertex.seen,
+                                        -static_cast<Vec3f>(normalized(vertex.line.direction)),
+                                        random_of(pixel, path, bounce + 1));
+          if (!vertex.mirror.is_on) vertex.carried = vertex.carried * vertex.seen.albedo;
           scratch.active[left++] = pixel;
         }
       }
       active = left;
       for (int light = 0; light < setup.light_count && active > 0; ++light)
         rays += add_path_light(caster, setup, light, tile, path, bounce, active, scratch, paths);
+      for (int i = 0; i < active && has_mirrors; ++i) {
+        PathVertex& vertex = paths.vertices[scratch.active[i]];
+        if (vertex.mirror.is_on) vertex.carried = vertex.carried * vertex.mirror.factor;
+      }
     }
   }
   return rays;

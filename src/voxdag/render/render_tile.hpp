@@ -28,14 +28,20 @@ VOXDAG_HD inline float sky_part(const RenderSetup& setup, const ViewSample& samp
 
 /// Returns the radiance of a surface with a metallic and a roughness number. `ambient` is the light
 /// that comes neither from sun nor lamps, divided by pi, `part` the part of the sky's light that
-/// arrives, `lit` the light of sun and lamps, divided by pi, and `highlights` what they mirror.
+/// arrives, `lit` the light of sun and lamps, divided by pi, and `highlights` what they mirror. If
+/// the light bounces, `ambient` is what the surface reflects of the first light.
 VOXDAG_HD inline Vec3f mirror_radiance(const RenderSetup& setup, const ViewTile& tile, int pixel,
                                        const ViewSample& sample, Vec3f ambient, float part,
                                        Vec3f lit, Vec3f highlights) {
   const Vec3f view = static_cast<Vec3f>(normalized(pixel_direction(setup, tile, pixel)));
+  const bool is_traced = setup.settings.bounces >= 0;
   Vec3f sky;
-  const MirroredParts parts = sample_mirror(setup, sample, -view, tile.x + tile.column(pixel),
-                                            tile.y + tile.row(pixel), tile.sample_index, &sky);
+  const MirroredParts parts =
+      sample_mirror(setup, sample, -view, tile.x + tile.column(pixel), tile.y + tile.row(pixel),
+                    tile.sample_index, is_traced ? nullptr : &sky);
+  if (is_traced)
+    return lit * diffuse_albedo(sample.metallic_roughness, sample.albedo, parts) + ambient +
+           highlights;
   return (ambient + lit) * diffuse_albedo(sample.metallic_roughness, sample.albedo, parts) +
          sky * part + highlights;
 }

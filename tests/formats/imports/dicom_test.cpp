@@ -115,6 +115,29 @@ TEST_F(Dicom, ValuesAreScaledFileByFile) {
   EXPECT_EQ(read("scan", -1020.0).voxels, volume.voxels([](auto v) { return v >= 2; }));
 }
 
+TEST_F(Dicom, ValuesOfAFolderAreAChannelAndLabels) {
+  const RandomVolume<std::int16_t> volume({4, 3, 5}, 1);
+  const std::vector<Vec3i> set = volume.voxels_not_0();
+  write_series(volume);
+  const ChannelRequest value{"value", {}};
+  EXPECT_EQ(read_with("scan", {.channels = {value}}).channels, volume.values_at<double>(set));
+  const auto kind = [&] {
+    return open_voxel_source(path("scan"), {.channels = {value}})->channels()[0].kind;
+  };
+  EXPECT_EQ(kind(), ChannelKind::kI16);
+  EXPECT_EQ(read_with("scan", {.labels = ""}).labels, volume.values_at<Label>(set));
+  write_series(volume, {.slope = "0.5", .intercept = "10"});
+  const SourceVoxels scaled = read_with("scan", {.channels = {value}});
+  EXPECT_EQ(kind(), ChannelKind::kF32);
+  ASSERT_EQ(scaled.voxels.size(), volume.values.size());
+  for (std::size_t i = 0; i < scaled.voxels.size(); ++i)
+    EXPECT_EQ(scaled.channels[i], 0.5 * volume.at(scaled.voxels[i]) + 10);
+  EXPECT_TRUE(has(error_of([&] {
+                    read_with("scan", {.channels = {{"density", {}}}});
+                  }),
+                  "the numbers of a volume are called 'value'"));
+}
+
 TEST_F(Dicom, PlacesAndSpacingAreThoseOfTheFiles) {
   const RandomVolume<std::uint8_t> volume({2, 2, 3}, 1);
   write_series(volume, {.spacing = "0.5\\0.5"},

@@ -298,6 +298,36 @@ TEST_F(LabelFiles, TextsHaveThemInAColumn) {
   EXPECT_TRUE(has(error("p.xyz", "0 0 0 1\n"), "its fields are without names"));
 }
 
+TEST_F(LabelFiles, TextsHaveChannelsInColumns) {
+  const auto read = [&](const std::string& name, const std::string& bytes,
+                        const VoxelSourceOptions& options) {
+    write_text(dir_ / name, bytes);
+    std::vector<double> values;
+    const auto source = open_voxel_source(dir_ / name, options);
+    for (const ChannelSpec& spec : source->channels()) EXPECT_EQ(spec.kind, ChannelKind::kF32);
+    EXPECT_TRUE(source->warnings().empty());
+    source->visit_all([&](const VoxelBatch& batch) {
+      values.insert(values.end(), batch.channels.begin(), batch.channels.end());
+    });
+    return values;
+  };
+  EXPECT_EQ(read("p.csv", "x,y,z,heat,class\n0,0,0,1.5,7\n1,0,0,-2,300\n",
+                 {.labels = "class", .channels = {{"Heat", {}}, {"5", "kind"}}}),
+            (std::vector<double>{1.5, 7, -2, 300}));
+  const std::string rows = "0 0 0 0.5 1 2 9\n1 0 0 0.5 1 2 -8.25\n";
+  EXPECT_EQ(read("p.xyz", rows, {.channels = {{"7", {}}}}), (std::vector<double>{9, -8.25}));
+  EXPECT_EQ(open_voxel_source(dir_ / "p.xyz", {.channels = {{"7", {}}}})->channels()[0].name, "7");
+  const auto error = [&](const std::string& bytes, const std::string& field) {
+    return error_of([&] { read("p.xyz", bytes, {.channels = {{field, {}}}}); });
+  };
+  EXPECT_TRUE(has(error(rows, "8"), "line 1: has no number in column 8"));
+  EXPECT_TRUE(has(error("0 0 0 1\n1 0 0\n", "4"), "line 2: has no number in column 4"));
+  EXPECT_TRUE(has(error(rows, "2"), "has no field '2'; its fields are without names"));
+  EXPECT_TRUE(has(error("# x y z heat\n" + rows, "cold"),
+                  "has no field 'cold'; its fields are x, y, z, heat"));
+  EXPECT_TRUE(has(error(rows, ""), "a channel needs the name of a field"));
+}
+
 /// Returns a .npy file.
 std::string npy(const std::string& dtype, const std::string& shape, const std::string& data) {
   std::string header = "{'descr': " + dtype + ", 'fortran_order': False, 'shape': " + shape + ", }";

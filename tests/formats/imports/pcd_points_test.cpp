@@ -353,5 +353,55 @@ TEST_F(PcdPointsTest, BadCompressedDataIsRefusedWithItsPlace) {
   expect_error(bytes, "the file ends inside its compressed data");
 }
 
+TEST_F(PcdPointsTest, FieldsAreChannels) {
+  const std::vector<Field> fields{{"x", 'F', 4},    {"y", 'F', 4},     {"z", 'F', 8},
+                                  {"rgb", 'U', 4},  {"heat", 'F', 8},  {"ring", 'U', 2},
+                                  {"side", 'I', 1}, {"label", 'I', 4}, {"vector", 'F', 4, 3}};
+  const auto value = [](std::size_t i, const std::string& name, int) {
+    const auto n = static_cast<double>(i);
+    if (name == "ring") return 60000 + n;
+    if (name == "side") return -n;
+    if (name == "label") return 70000 - n;
+    return name == "heat" ? n / 4 - 3 : n;
+  };
+  constexpr std::size_t kPoints = 100;
+  const std::vector<ChannelRequest> wanted{{"ring", {}}, {"Heat", "t"}, {"side", {}}, {"x", {}}};
+  for (const char* const kind : kKinds)
+    for (const bool has_labels : {false, true}) {
+      write_text(path_, pcd_of({fields, kind}, kPoints, value));
+      const auto source = open_voxel_source(
+          path_, {.labels = has_labels ? LabelRequest("") : LabelRequest(), .channels = wanted});
+      const std::vector<ChannelSpec> specs = source->channels();
+      ASSERT_EQ(specs.size(), 4u);
+      EXPECT_EQ(specs[0].name, "ring");
+      EXPECT_EQ(specs[0].kind, ChannelKind::kU16);
+      EXPECT_EQ(specs[1].name, "t");
+      EXPECT_EQ(specs[1].kind, ChannelKind::kF32);
+      EXPECT_EQ(specs[2].kind, ChannelKind::kI16);
+      std::size_t at = 0;
+      source->visit_all([&](const VoxelBatch& batch) {
+        ASSERT_EQ(batch.channels.size(), 4 * batch.places.size());
+        for (std::size_t i = 0; i < batch.places.size(); ++i, ++at) {
+          EXPECT_EQ(batch.places[i].z, static_cast<double>(at));
+          EXPECT_EQ(batch.colors[i][2], at);
+          EXPECT_EQ(batch.channels[4 * i], value(at, "ring", 0));
+          EXPECT_EQ(batch.channels[4 * i + 1], value(at, "heat", 0));
+          EXPECT_EQ(batch.channels[4 * i + 2], value(at, "side", 0));
+          EXPECT_EQ(batch.channels[4 * i + 3], static_cast<double>(at));
+          const double label = has_labels ? static_cast<double>(batch.labels[i]) : 0;
+          EXPECT_EQ(label, has_labels ? value(at, "label", 0) : 0);
+        }
+      });
+      EXPECT_EQ(at, kPoints);
+      const auto error = [&](const std::string& field) {
+        return error_of([&] { open_voxel_source(path_, {.channels = {{field, {}}}}); });
+      };
+      EXPECT_NE(error("cold").find("has no field 'cold'; its fields are x, y, z, rgb, heat"),
+                std::string::npos);
+      EXPECT_NE(error("vector").find("has 3 values, and a channel has one number"),
+                std::string::npos);
+    }
+}
+
 }  // namespace
 }  // namespace voxdag

@@ -62,6 +62,46 @@ TEST_F(PngSlicesTest, GreyValuesAreComparedWithTheThreshold) {
   check(words, 16);
 }
 
+TEST_F(PngSlicesTest, GreyValuesAreLabelsAndAChannel) {
+  const RandomVolume<std::uint8_t> bytes({5, 3, 12}, 3);
+  const RandomVolume<std::uint16_t> words({5, 3, 12}, 4);
+  const ChannelRequest value{"value", "density"};
+  const auto check = [&](const auto& volume, int bits, ChannelKind kind) {
+    new_folder();
+    const std::string data = volume.bytes(true);
+    const std::size_t slice = data.size() / 12;
+    for (std::size_t z = 0; z < 12; ++z)
+      add("slice " + std::to_string(z) + ".png",
+          png_of(5, 3, PNG_COLOR_TYPE_GRAY, bits, data.substr(z * slice, slice)));
+    const std::vector<Vec3i> set = volume.voxels_not_0(),
+                             high = volume.voxels([](auto v) { return v >= 3; });
+    const SourceVoxels both = read_with("s", {.labels = "", .channels = {value}});
+    EXPECT_EQ(both.voxels, set);
+    EXPECT_EQ(both.labels, volume.template values_at<Label>(set));
+    EXPECT_EQ(both.channels, volume.template values_at<double>(set));
+    EXPECT_EQ(read_with("s", {.threshold = 3, .labels = ""}).labels,
+              volume.template values_at<Label>(high));
+    const auto source = open_voxel_source(path("s"), {.channels = {value}});
+    ASSERT_EQ(source->channels().size(), 1u);
+    EXPECT_EQ(source->channels()[0].kind, kind);
+    EXPECT_EQ(source->channels()[0].name, "density");
+  };
+  check(bytes, 8, ChannelKind::kU8);
+  check(words, 16, ChannelKind::kU16);
+  const auto error = [&](const VoxelSourceOptions& options) {
+    return error_of([&] { read_with("s", options); });
+  };
+  EXPECT_TRUE(has(error({.labels = "organ"}), "has no fields, of which 'organ'"));
+  EXPECT_TRUE(has(error({.channels = {{"grey", {}}}}), "are called 'value'"));
+  EXPECT_TRUE(has(error({.channels = {value, value}}), "so one channel"));
+  add("slice 7.png", png_of(5, 3, PNG_COLOR_TYPE_GRAY, 4, std::string(9, '\1')));
+  EXPECT_TRUE(has(error({.labels = ""}),
+                  "slice 7.png: header: has grey values of 4 bits, and labels need 8 or 16"));
+  add("slice 7.png", png_of(5, 3, PNG_COLOR_TYPE_RGB, 8, std::string(45, '\1')));
+  EXPECT_TRUE(has(error({.labels = ""}), "slice 7.png: header: holds colours, not labels"));
+  EXPECT_TRUE(has(error({.channels = {value}}), "holds colours, not channels"));
+}
+
 TEST_F(PngSlicesTest, AlphaAndColorsDecide) {
   new_folder();
   add("1.png",

@@ -66,6 +66,13 @@ struct RandomVolume {
     });
     return set;
   }
+  /// Returns the values of voxels.
+  template <class To>
+  std::vector<To> values_at(const std::vector<Vec3i>& places) const {
+    std::vector<To> result;
+    for (const Vec3i place : places) result.push_back(static_cast<To>(at(place)));
+    return result;
+  }
   std::vector<Vec3i> voxels_not_0(bool is_z_fastest = false) const {
     return voxels([](T v) { return v == v && v != 0; }, is_z_fastest);
   }

@@ -5,6 +5,9 @@
 #endif
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <tuple>
 
 #include "support/brute_svdag.hpp"
 #include "volume_files.hpp"
@@ -70,6 +73,79 @@ TYPED_TEST(VdbOf, ActiveVoxelsAreSet) {
   EXPECT_EQ(this->open("v.vdb")->grid()->voxel_size, 0.5);
   EXPECT_EQ(this->open("v.vdb")->grid()->origin, (Vec3d{-12.75, 49.75, -3.75}));
   EXPECT_TRUE(this->open("v.vdb")->warnings().empty());
+}
+
+TYPED_TEST(VdbOf, ValuesAreLabelsAndChannels) {
+  using Value = typename TypeParam::ValueType;
+  openvdb::initialize();
+  const auto grid = TypeParam::create();
+  const auto heat = openvdb::FloatGrid::create(-7), far = openvdb::FloatGrid::create();
+  grid->setName("organ");
+  heat->setName("heat");
+  far->setName("far");
+  far->setTransform(openvdb::math::Transform::createLinearTransform(2));
+  std::mt19937 rng(5);
+  std::map<std::tuple<int, int, int>, std::array<double, 2>> expected;
+  // The tile is a cube of 8 voxels, of which some have heat.
+  grid->tree().addTile(1, openvdb::Coord(8, 0, 0), static_cast<Value>(1), true);
+  for (int i = 0; i < 512; ++i) expected[{8 + i / 64, i / 8 % 8, i % 8}] = {1, -7};
+  grid->tree().setValueOn(openvdb::Coord(0, 0, 0), static_cast<Value>(1));
+  expected[{0, 0, 0}] = {1, -7};
+  for (int i = 0; i < 200; ++i) {
+    const auto at = [&] { return static_cast<int>(rng() % 8); };
+    const openvdb::Coord place(at(), at(), at()), hot(8 + at(), at(), at());
+    const auto value = static_cast<Value>(static_cast<int>(rng() % 5));
+    grid->tree().setValueOn(place, value);
+    expected[{place.x(), place.y(), place.z()}] = {static_cast<double>(value), -7};
+    heat->tree().setValueOn(hot, static_cast<float>(i));
+    expected[{hot.x(), hot.y(), hot.z()}][1] = i;
+  }
+  write_grids(this->path("v.vdb"), {grid, heat, far});
+  const std::vector<ChannelRequest> wanted{{"Heat", {}}, {"value", {}}};
+  const VoxelSourceOptions options{.grid = "organ", .labels = "", .channels = wanted};
+  const SourceVoxels found = this->read_with("v.vdb", options);
+  ASSERT_EQ(found.voxels.size(), expected.size());
+  for (std::size_t i = 0; i < found.voxels.size(); ++i) {
+    const Vec3i v = found.voxels[i];
+    const std::array<double, 2> values = expected.at({v.x, v.y, v.z});
+    EXPECT_EQ(found.labels[i], static_cast<Label>(values[0]));
+    EXPECT_EQ(found.channels[2 * i], values[1]);
+    EXPECT_EQ(found.channels[2 * i + 1], values[0]);
+  }
+  const auto source = open_voxel_source(this->path("v.vdb"), options);
+  EXPECT_EQ(source->channels()[0].kind, ChannelKind::kF32);
+  constexpr bool kIsReal = std::is_floating_point_v<Value>, kIsBool = sizeof(Value) == 1;
+  EXPECT_EQ(source->channels()[1].kind,
+            kIsReal ? ChannelKind::kF32 : (kIsBool ? ChannelKind::kU8 : ChannelKind::kI32));
+  const auto error = [&](const VoxelSourceOptions& others) {
+    return error_of([&] { this->read_with("v.vdb", others); });
+  };
+  EXPECT_TRUE(this->has(error({.grid = "organ", .channels = {{"far", {}}}}),
+                        "grid 'far' has another transform than 'organ'"));
+  EXPECT_TRUE(this->has(error({.grid = "organ", .channels = {{"cold", {}}}}),
+                        "has no field 'cold'; its fields are far, heat, organ"));
+  EXPECT_TRUE(this->has(error({.grid = "organ", .labels = "heat"}),
+                        "has no fields, of which 'heat' could have labels"));
+}
+
+TEST_F(Vdb, LabelsAreWholeAndBoxesKeepAllChannels) {
+  openvdb::initialize();
+  const auto grid = openvdb::FloatGrid::create(), other = openvdb::FloatGrid::create(3);
+  grid->setName("density");
+  other->setName("other");
+  openvdb::Mat4R matrix = openvdb::Mat4R::identity();
+  matrix[1][1] = 3;  // Each voxel becomes three cubes.
+  for (const auto& of : {grid, other})
+    of->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+  grid->tree().setValueOn(openvdb::Coord(0, 0, 0), 2);
+  write_grids(path("v.vdb"), {grid, other});
+  EXPECT_EQ(
+      read_with("v.vdb", {.labels = "", .channels = {{"other", {}}, {"density", {}}}}).channels,
+      (std::vector<double>{3, 2, 3, 2, 3, 2}));
+  EXPECT_EQ(read_with("v.vdb", {.labels = ""}).labels, (std::vector<Label>{2, 2, 2}));
+  grid->tree().setValueOn(openvdb::Coord(0, 0, 0), 2.5);
+  write_grids(path("v.vdb"), {grid});
+  EXPECT_TRUE(has(error_of([&] { read_with("v.vdb", {.labels = ""}); }), "has the label 2.5"));
 }
 
 TEST_F(Vdb, LevelSetsAreFilled) {

@@ -22,6 +22,8 @@ inline void append(std::string& text, std::uint64_t value, int bytes, bool big_e
 struct SourceVoxels {
   std::vector<Vec3i> voxels;
   std::vector<Rgb8> colors;
+  std::vector<Label> labels;
+  std::vector<double> channels;
 };
 
 class VolumeTest : public testing::Test {
@@ -42,8 +44,17 @@ class VolumeTest : public testing::Test {
     return import_voxels(*open(name, threshold), options);
   }
   SourceVoxels read(const std::string& name, std::optional<double> threshold = {}) const {
+    return read_with(name, {threshold});
+  }
+  SourceVoxels read_with(const std::string& name, const VoxelSourceOptions& options) const {
     SourceVoxels all;
-    open(name, threshold)->visit_all([&](const VoxelBatch& batch) {
+    const auto source = open_voxel_source(path(name), options);
+    const std::size_t each = source->channels().size();
+    source->visit_all([&](const VoxelBatch& batch) {
+      EXPECT_EQ(batch.labels.size(), source->has_labels() ? batch.places.size() : 0);
+      EXPECT_EQ(batch.channels.size(), each * batch.places.size());
+      all.labels.insert(all.labels.end(), batch.labels.begin(), batch.labels.end());
+      all.channels.insert(all.channels.end(), batch.channels.begin(), batch.channels.end());
       for (const Vec3d place : batch.places) all.voxels.push_back(static_cast<Vec3i>(place));
       all.colors.insert(all.colors.end(), batch.colors.begin(), batch.colors.end());
     });

@@ -53,12 +53,12 @@ Source open_octomap_file(const Path& path, const Options& options) {
 
 constexpr SourceFormat kSourceFormats[] = {
     {".npy", true, with_values<open_npy>},
-    {".xyz", false, with_labels<open_xyz_points>},
-    {".txt", false, with_labels<open_xyz_points>},
-    {".csv", false, with_labels<open_xyz_points>},
-    {".asc", false, with_labels<open_xyz_points>},
-    {".pts", false, with_labels<open_xyz_points>},
-    {".xyzrgb", false, with_labels<open_xyz_points>},
+    {".xyz", false, with_fields<open_xyz_points>},
+    {".txt", false, with_fields<open_xyz_points>},
+    {".csv", false, with_fields<open_xyz_points>},
+    {".asc", false, with_fields<open_xyz_points>},
+    {".pts", false, with_fields<open_xyz_points>},
+    {".xyzrgb", false, with_fields<open_xyz_points>},
     {".ply", false,
      [](const Path& path, const Options& options) {
        return open_ply_points(path, options.splats_are_points, options.labels, options.channels);
@@ -70,7 +70,7 @@ constexpr SourceFormat kSourceFormats[] = {
     {".spz", false, with_splats<open_spz>},
     {".sog", false, with_splats<open_sog>},
     {".las", false, with_fields<open_las_points>},
-    {".pcd", false, with_labels<open_pcd_points>},
+    {".pcd", false, with_fields<open_pcd_points>},
     {".binvox", false, [](const Path& path, const Options&) { return open_binvox(path); }},
     {".nrrd", true, with_values<open_nrrd>},
     {".nhdr", true, with_values<open_nrrd>},
@@ -81,7 +81,7 @@ constexpr SourceFormat kSourceFormats[] = {
     {".dcm", true, with_values<open_dicom>},
     {".vdb", true,
      [](const Path& path, const Options& options) {
-       return open_vdb(path, options.threshold, options.grid);
+       return open_vdb(path, options.threshold, options.grid, options.labels, options.channels);
      }},
     {".vox", false, with_labels<open_vox>},
     {".schem", false, with_labels<open_schematic>},
@@ -106,7 +106,8 @@ std::unique_ptr<VoxelSource> open_slices(const Path& folder, const Options& opti
   // Files of DICOM may have any names.
   if (!has_png && has_dicom(folder)) return with_values<open_dicom>(folder, options);
   return open_png_slices(folder, options.threshold,
-                         options.use_placement && has_numbered_slices(folder));
+                         options.use_placement && has_numbered_slices(folder), options.labels,
+                         options.channels);
 }
 
 /// Opens `path`, whose format the end of `name` tells.

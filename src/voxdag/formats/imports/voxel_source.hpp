@@ -90,9 +90,11 @@ using LabelRequest = std::optional<std::string>;
 
 /// A channel to read.
 struct ChannelRequest {
-  std::string field;  ///< The field of points; for volumes of numbers "value".
-  std::string name;   ///< Of the channel. Empty: the field, with '_' for what names cannot have.
-  double bound = 0;   ///< Above 0: the channel is f32 with this bound.
+  /// The field of points, the column of texts, the grid of .vdb files; for volumes of numbers
+  /// "value".
+  std::string field;
+  std::string name;  ///< Of the channel. Empty: the field, with '_' for what names cannot have.
+  double bound = 0;  ///< Above 0: the channel is f32 with this bound.
   std::optional<ChannelKind> kind = {};  ///< Default: that of the field's numbers.
 };
 

@@ -45,4 +45,14 @@ std::vector<std::size_t> find_channel_fields(const std::vector<ChannelRequest>& 
   return fields;
 }
 
+/// Checks the requests of a format that has one number for each voxel. Throws Error, without a
+/// file, for more than one, and for another field than "value".
+inline void check_value_requests(const std::vector<ChannelRequest>& requests) {
+  if (requests.size() > 1) throw Error("", "", "has one value for each voxel, so one channel");
+  if (!requests.empty() && requests[0].field != "value")
+    throw Error("", "",
+                "has no field " + in_quotes(requests[0].field) +
+                    ": the numbers of a volume are called 'value'");
+}
+
 }  // namespace voxdag

@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/channels/channel_request.hpp"
 #include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/load_value.hpp"
@@ -52,17 +54,23 @@ std::uint32_t parse_color(std::string_view token) {
   return std::isnan(packed) ? 0 : bits_of_float(packed);
 }
 
-/// A point as the file has it.
-struct PcdPoint {
-  Vec3d place;
-  std::uint32_t color = 0;  ///< 0xAARRGGBB, of a field rgb or rgba.
-  Vec3d channels;           ///< Of the fields r, g and b.
-  double label = 0;
-};
+/// Returns the kind of channel for the numbers of a field.
+ChannelKind kind_of_field(const PcdField& field) {
+  if (field.type == 'F') return ChannelKind::kF32;
+  const bool is_signed = field.type == 'I';
+  if (field.size == 1) return kind_of(is_signed ? ValueType::kInt8 : ValueType::kUint8);
+  if (field.size == 2) return kind_of(is_signed ? ValueType::kInt16 : ValueType::kUint16);
+  return ChannelKind::kI32;
+}
+
+/// The values of a point: three coordinates, then a packed colour, 0xAARRGGBB, or red, green and
+/// blue, then the label, then the channels.
+using PcdValues = std::array<double, 7 + kMaxChannels>;
 
 class PcdPoints : public VoxelSource {
  public:
-  PcdPoints(const std::filesystem::path& path, const LabelRequest& labels)
+  PcdPoints(const std::filesystem::path& path, const LabelRequest& labels,
+            const std::vector<ChannelRequest>& channels)
       : file_(path, MappedFile::Access::kSequential),
         source_{file_.text(), path.string(), {}, &file_, {}},
         header_(parse_pcd_header(source_.bytes, source_.name)) {
@@ -81,19 +89,31 @@ class PcdPoints : public VoxelSource {
       if (field.count == 1 && field.size == 4) used_.push_back(field);
     }
     if (header_.data == PcdData::kCompressed && header_.points > 0) find_compressed();
-    if (used_.size() == 3) find_channels();
-    if (!labels) return;
-    const std::size_t found = find_label_field(
-        *labels, header_.fields.size(), [&](std::size_t i) { return header_.fields[i].name; });
-    if (header_.fields[found].count != 1)
-      throw fail_in_header("the field of labels has more than one value");
-    used_.push_back(header_.fields[found]);
-    has_labels_ = true;
+    color_fields_ = used_.size() - 3;
+    if (color_fields_ == 0) find_components();
+    const auto name_of = [&](std::size_t i) { return header_.fields[i].name; };
+    if (labels) {
+      const std::size_t found = find_label_field(*labels, header_.fields.size(), name_of);
+      if (header_.fields[found].count != 1)
+        throw fail_in_header("the field of labels has more than one value");
+      used_.push_back(header_.fields[found]);
+      has_labels_ = true;
+    }
+    if (channels.size() > kMaxChannels) throw fail_in_header("at most 16 channels are read");
+    for (const std::size_t found : find_channel_fields(channels, header_.fields.size(), name_of)) {
+      const PcdField& field = header_.fields[found];
+      if (field.count != 1)
+        throw fail_in_header("field " + in_quotes(field.name) + " has " +
+                             std::to_string(field.count) + " values, and a channel has one number");
+      channels_.push_back(channel_spec(channels[channels_.size()], kind_of_field(field)));
+      used_.push_back(field);
+    }
   }
 
   bool has_points() const override { return true; }
-  bool has_colors() const override { return color_fields() > 0; }
+  bool has_colors() const override { return color_fields_ > 0; }
   bool has_labels() const override { return has_labels_; }
+  std::vector<ChannelSpec> channels() const override { return channels_; }
   CoordinateError coordinate_error() const override {
     const bool has_floats = std::any_of(used_.begin(), used_.begin() + 3, [](const PcdField& f) {
       return f.type == 'F' && f.size == 4;
@@ -102,29 +122,30 @@ class PcdPoints : public VoxelSource {
   }
   void visit_all(const VisitBatch& visit) const override {
     BatchedVoxels points(visit);
-    for_each_point([&](const PcdPoint& point) { add(points, point); });
+    for_each_point([&](const PcdValues& values) { add(points, values); });
     points.finish();
   }
 
  private:
-  std::size_t color_fields() const { return used_.size() - (has_labels_ ? 4 : 3); }
-  bool is_label(std::size_t used) const { return has_labels_ && used + 1 == used_.size(); }
+  /// Returns whether a field is a packed colour.
+  bool is_packed(std::size_t used) const { return color_fields_ == 1 && used == 3; }
 
   Error fail_in_header(const std::string& reason) const { return {source_.name, "header", reason}; }
 
   /// Finds colours in fields r, g and b: of bytes, 16 bits, or real numbers to 1 or 255.
-  void find_channels() {
+  void find_components() {
     for (const char* const name : {"r", "g", "b"}) {
       const int found = header_.find(name);
       if (found < 0 || header_.fields[found].count != 1) return used_.resize(3);
       used_.push_back(header_.fields[found]);
     }
+    color_fields_ = 3;
     if (used_[3].type != 'F') {
       color_range_ = used_[3].size == 2 ? 65535 : 255;
       return;
     }
-    for_each_point([&](const PcdPoint& point) {
-      if (std::max({point.channels.x, point.channels.y, point.channels.z}) >= 2) color_range_ = 255;
+    for_each_point([&](const PcdValues& values) {
+      if (std::max({values[3], values[4], values[5]}) >= 2) color_range_ = 255;
     });
   }
 
@@ -144,29 +165,23 @@ class PcdPoints : public VoxelSource {
     }
   }
 
-  void add(BatchedVoxels& points, const PcdPoint& point) const {
-    if (has_labels_) points.add_label(label_of(point.label));
-    if (!has_colors()) return points.add(point.place);
-    if (color_fields() > 1) {
-      const Vec3d channels = point.channels * (1 / color_range_);
-      return points.add(point.place,
-                        {color_byte(channels.x), color_byte(channels.y), color_byte(channels.z)});
-    }
-    const std::uint32_t color = point.color;
-    points.add(point.place,
-               {static_cast<std::uint8_t>(color >> 16), static_cast<std::uint8_t>(color >> 8),
-                static_cast<std::uint8_t>(color)});
+  void add(BatchedVoxels& points, const PcdValues& values) const {
+    const std::size_t label = 3 + color_fields_, first_channel = label + (has_labels_ ? 1 : 0);
+    const Vec3d place{values[0], values[1], values[2]};
+    if (has_labels_) points.add_label(label_of(values[label]));
+    for (std::size_t c = first_channel; c < used_.size(); ++c) points.add_channel(values[c]);
+    if (!has_colors()) return points.add(place);
+    Rgb8 color;
+    for (std::size_t c = 0; c < 3; ++c)
+      color[c] =
+          color_fields_ > 1
+              ? color_byte(values[3 + c] * (1 / color_range_))
+              : static_cast<std::uint8_t>(static_cast<std::uint32_t>(values[3]) >> (16 - 8 * c));
+    points.add(place, color);
   }
 
-  void load_field(std::size_t used, const char* at, PcdPoint& point) const {
-    if (used < 3)
-      point.place[static_cast<int>(used)] = load_number(used_[used], at);
-    else if (is_label(used))
-      point.label = load_number(used_[used], at);
-    else if (color_fields() > 1)
-      point.channels[static_cast<int>(used) - 3] = load_number(used_[used], at);
-    else
-      point.color = load_value<std::uint32_t>(at);
+  double load_field(std::size_t used, const char* at) const {
+    return is_packed(used) ? load_value<std::uint32_t>(at) : load_number(used_[used], at);
   }
 
   template <class Use>
@@ -185,8 +200,8 @@ class PcdPoints : public VoxelSource {
     }
   }
 
-  PcdPoint parse_point(std::string_view line) const {
-    PcdPoint point;
+  PcdValues parse_point(std::string_view line) const {
+    PcdValues values{};
     for (std::uint64_t value = 0; value < header_.point_values; ++value) {
       const std::string_view token = next_token(line);
       if (token.empty())
@@ -194,25 +209,21 @@ class PcdPoints : public VoxelSource {
                                      std::to_string(header_.point_values) + " values"};
       for (std::size_t used = 0; used < used_.size(); ++used) {
         if (used_[used].ordinal != value) continue;
-        const bool is_channel = used >= 3 && !is_label(used);
-        if (is_channel && color_fields() == 1) {
-          point.color = parse_color(token);
-          continue;
-        }
-        double& number = is_label(used) ? point.label
-                         : is_channel   ? point.channels[static_cast<int>(used) - 3]
-                                        : point.place[static_cast<int>(used)];
-        if (!parse_float(token, number))
-          throw Fault{token.data(), (is_label(used) ? "label "
-                                     : is_channel   ? "colour "
-                                                    : "coordinate ") +
-                                        in_quotes(token) + " is not a number"};
+        if (is_packed(used))
+          values[used] = parse_color(token);
+        else if (!parse_float(token, values[used]))
+          throw Fault{token.data(), kind_of_value(used) + in_quotes(token) + " is not a number"};
       }
     }
     const std::string_view extra = next_token(line);
     if (!extra.empty())
       throw Fault{extra.data(), "the point has " + in_quotes(extra) + " after its last value"};
-    return point;
+    return values;
+  }
+  std::string kind_of_value(std::size_t used) const {
+    if (used < 3) return "coordinate ";
+    if (used < 3 + color_fields_) return "colour ";
+    return has_labels_ && used == 3 + color_fields_ ? "label " : "channel ";
   }
 
   template <class Use>
@@ -220,10 +231,10 @@ class PcdPoints : public VoxelSource {
     const char* at = source_.bytes.data() + header_.body;
     PassedPages pages(file_, at);
     for (std::uint64_t i = 0; i < header_.points; ++i) {
-      PcdPoint point;
+      PcdValues values{};
       for (std::size_t used = 0; used < used_.size(); ++used)
-        load_field(used, at + used_[used].offset, point);
-      use(point);
+        values[used] = load_field(used, at + used_[used].offset);
+      use(values);
       at += header_.point_bytes;
       pages.pass(at);
     }
@@ -285,10 +296,10 @@ class PcdPoints : public VoxelSource {
           streams[used].read(column, count * field.size);
       }
       for (std::size_t i = 0; i < count; ++i) {
-        PcdPoint point;
+        PcdValues values{};
         for (std::size_t used = 0; used < used_.size(); ++used)
-          load_field(used, columns[used].data() + i * used_[used].size, point);
-        use(point);
+          values[used] = load_field(used, columns[used].data() + i * used_[used].size);
+        use(values);
       }
     }
   }
@@ -296,9 +307,10 @@ class PcdPoints : public VoxelSource {
   MappedFile file_;
   MeshSource source_;
   PcdHeader header_;
-  /// x, y, z, and perhaps a packed colour, or r, g and b, and the label.
-  std::vector<PcdField> used_;
+  std::vector<PcdField> used_;    ///< The fields of the values.
+  std::size_t color_fields_ = 0;  ///< 1: packed.
   bool has_labels_ = false;
+  std::vector<ChannelSpec> channels_;
   double color_range_ = 1;       ///< The greatest component of r, g and b.
   std::string_view compressed_;  ///< None if no point is compressed.
   bool is_stored_ = false;       ///< The data of a compressed file are as they were.
@@ -307,8 +319,9 @@ class PcdPoints : public VoxelSource {
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_pcd_points(const std::filesystem::path& path,
-                                             const LabelRequest& labels) {
-  return std::make_unique<PcdPoints>(path, labels);
+                                             const LabelRequest& labels,
+                                             const std::vector<ChannelRequest>& channels) {
+  return std::make_unique<PcdPoints>(path, labels, channels);
 }
 
 }  // namespace voxdag

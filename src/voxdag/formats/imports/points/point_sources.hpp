@@ -22,12 +22,14 @@ std::unique_ptr<VoxelSource> open_npy_points(const std::filesystem::path& path,
 /// A comment or a line before the points may name the columns: x, y, z, r, g, b, or red, green,
 /// blue. Without names, the columns behind the coordinates are a colour if the first 4,096 points
 /// have whole numbers from 0 to 255 there, not only 0 and 1; behind one column more if not, as in
-/// .pts files. A line with one whole number counts points.
+/// .pts files. A line with one whole number counts points. A column of labels or of a channel has
+/// a name, or a number from 4 on; channels are f32 by default.
 ///
 /// Throws Error with the line: numbers that are none, commas inside numbers, colours beyond the
 /// range of the first points, and texts in UTF-16.
 std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path,
-                                             const LabelRequest& labels = {});
+                                             const LabelRequest& labels = {},
+                                             const std::vector<ChannelRequest>& channels = {});
 
 /// Opens the vertices of a PLY file as points, in ascii and in both binary orders; ignores faces
 /// and other elements. Numbers of text are float64, whatever their type is called. The colours are
@@ -97,6 +99,7 @@ std::unique_ptr<VoxelSource> open_las_points(const std::filesystem::path& path,
 /// Throws Error with the line or byte: malformed headers and values, counts that need a longer
 /// file, compressed data that is damaged or that promises more than LZF can hold.
 std::unique_ptr<VoxelSource> open_pcd_points(const std::filesystem::path& path,
-                                             const LabelRequest& labels = {});
+                                             const LabelRequest& labels = {},
+                                             const std::vector<ChannelRequest>& channels = {});
 
 }  // namespace voxdag

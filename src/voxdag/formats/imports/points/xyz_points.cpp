@@ -11,6 +11,7 @@
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/channels/channel_request.hpp"
 #include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
@@ -118,12 +119,18 @@ std::size_t value_of_name(std::string_view name) {
 
 class XyzPoints : public VoxelSource {
  public:
-  XyzPoints(const std::filesystem::path& path, const LabelRequest& labels)
+  XyzPoints(const std::filesystem::path& path, const LabelRequest& labels,
+            const std::vector<ChannelRequest>& channels)
       : name_(path.string()), file_(path, MappedFile::Access::kSequential) {
     if (file_.text().starts_with("\xFF\xFE") || file_.text().starts_with("\xFE\xFF"))
       throw Error(name_, "", "is a text in UTF-16: save it in UTF-8");
     find_header();
-    if (labels) find_labels(*labels);
+    if (labels) label_column_ = column_of(*labels);
+    for (const ChannelRequest& channel : channels) {
+      if (channel.field.empty()) throw Error("", "", "a channel needs the name of a field");
+      channel_columns_.push_back(column_of(channel.field));
+      channels_.push_back(channel_spec(channel, ChannelKind::kF32));
+    }
     if (!has_names_) find_colors();
     if (has_colors()) find_color_range();
   }
@@ -131,6 +138,7 @@ class XyzPoints : public VoxelSource {
   bool has_points() const override { return true; }
   bool has_colors() const override { return columns_.size() > kCoordinates; }
   bool has_labels() const override { return label_column_.has_value(); }
+  std::vector<ChannelSpec> channels() const override { return channels_; }
   std::vector<std::string> warnings() const override { return warnings_; }
   void visit_all(const VisitBatch& visit) const override {
     BatchedVoxels points(visit);
@@ -203,22 +211,28 @@ class XyzPoints : public VoxelSource {
     for (const std::string_view name : fields_of(names)) names_.emplace_back(name);
   }
 
-  /// Finds the column of the labels by its name or its number, from 1 on.
-  void find_labels(const std::string& wanted) {
+  /// Returns a column behind the coordinates, by its name or its number, from 1 on. An empty text
+  /// stands for that of the labels.
+  std::size_t column_of(const std::string& wanted) const {
     std::int64_t number = 0;
     if (parse_int(wanted, number) && number > static_cast<std::int64_t>(kCoordinates))
-      label_column_ = static_cast<std::size_t>(number) - 1;
-    else
-      label_column_ =
-          find_label_field(wanted, names_.size(), [&](std::size_t i) { return names_[i]; });
+      return static_cast<std::size_t>(number) - 1;
+    return find_label_field(wanted, names_.size(), [&](std::size_t i) { return names_[i]; });
   }
 
-  Label label_in(std::string_view line, std::uint64_t number) const {
+  /// Adds the label and the channels of the point in a line.
+  void add_fields(BatchedVoxels& points, std::string_view line, std::uint64_t number) const {
+    if (!label_column_ && channels_.empty()) return;
     const std::vector<std::string_view> fields = fields_of(line);
-    double value = 0;
-    if (*label_column_ >= fields.size() || !parse_number(fields[*label_column_], value))
-      fail(number, "has no label in column " + std::to_string(*label_column_ + 1));
-    return label_of(value);
+    const auto value_in = [&](std::size_t column, const char* what) {
+      double value = 0;
+      if (column >= fields.size() || !parse_number(fields[column], value))
+        fail(number, std::string("has no ") + what + " in column " + std::to_string(column + 1));
+      return value;
+    };
+    if (label_column_) points.add_label(label_of(value_in(*label_column_, "label")));
+    for (const std::size_t column : channel_columns_)
+      points.add_channel(value_in(column, "number"));
   }
 
   static bool has_coordinate_names(const std::vector<std::string_view>& fields) {
@@ -281,7 +295,7 @@ class XyzPoints : public VoxelSource {
       for (std::size_t c = 0; c < 3; ++c) columns_.push_back(first + c);
       return;
     }
-    if (fewest >= kValues)
+    if (fewest >= kValues && !label_column_ && channels_.empty())
       warnings_.emplace_back(
           "its columns after the third are left out: they have no names, and are no colours of "
           "whole numbers from 0 to 255");
@@ -359,7 +373,7 @@ class XyzPoints : public VoxelSource {
   void add(BatchedVoxels& points, std::string_view line, std::uint64_t number) const {
     const std::array<double, kValues> values = values_of(line, number);
     const Vec3d point{values[0], values[1], values[2]};
-    if (label_column_) points.add_label(label_in(line, number));
+    add_fields(points, line, number);
     if (!has_colors()) return points.add(point);
     Rgb8 color;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -381,14 +395,17 @@ class XyzPoints : public VoxelSource {
   double color_range_ = 255;                   ///< The greatest component.
   std::vector<std::string> names_;             ///< Of all columns, if they have names.
   std::optional<std::size_t> label_column_;
+  std::vector<std::size_t> channel_columns_;
+  std::vector<ChannelSpec> channels_;
   std::vector<std::string> warnings_;
 };
 
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path,
-                                             const LabelRequest& labels) {
-  return std::make_unique<XyzPoints>(path, labels);
+                                             const LabelRequest& labels,
+                                             const std::vector<ChannelRequest>& channels) {
+  return std::make_unique<XyzPoints>(path, labels, channels);
 }
 
 }  // namespace voxdag

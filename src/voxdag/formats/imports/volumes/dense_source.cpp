@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/printable.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/formats/imports/channels/channel_request.hpp"
 #include "voxdag/formats/imports/value_type.hpp"
 #include "voxdag/formats/imports/volumes/gzip_stream.hpp"
@@ -111,7 +111,7 @@ class DenseSource : public VoxelSource {
                   file_.volume.has_colors()
                       ? "holds colours, not " + wanted
                       : "holds several layers, and " + wanted + " need one value for each voxel");
-    check_value_channel();
+    with_file_name(file_.path.string(), [&] { check_value_requests(file_.channels); });
     if (file_.volume.channels == 4 && file_.volume.has_colors())
       with_bytes([&](const FillBytes& fill) {
         file_.volume.has_opaque_alpha = has_opaque_alpha(file_.volume, fill);
@@ -146,16 +146,6 @@ class DenseSource : public VoxelSource {
     return file_.encoding == Encoding::kRaw || file_.encoding == Encoding::kPlanar;
   }
   std::string_view data() const { return file_.data.text().substr(file_.begin); }
-
-  void check_value_channel() const {
-    if (file_.channels.empty()) return;
-    if (file_.channels.size() > 1)
-      throw Error(file_.path.string(), "", "has one value for each voxel, so one channel");
-    if (file_.channels[0].field != "value")
-      throw Error(file_.path.string(), "",
-                  "has no field " + in_quotes(file_.channels[0].field) +
-                      ": the numbers of a volume are called 'value'");
-  }
 
   void check_length() {
     const std::uint64_t size = data().size(), needed = file_.volume.bytes();

@@ -5,6 +5,8 @@
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/channels/channel_request.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/volumes/dense_volume.hpp"
 #include "voxdag/formats/imports/volumes/slice_files.hpp"
 #include "voxdag/formats/imports/volumes/value_test.hpp"
@@ -15,20 +17,30 @@
 namespace voxdag {
 namespace {
 
+/// The byte of a PNG file that has the bits of a value.
+constexpr std::size_t kBitDepth = 24;
+
 bool is_png(const std::string& name) { return lower_case(name).ends_with(".png"); }
 
 class PngSlices : public VoxelSource {
  public:
-  PngSlices(std::filesystem::path folder, std::optional<double> threshold, bool numbered)
+  PngSlices(std::filesystem::path folder, std::optional<double> threshold, bool numbered,
+            bool has_labels, const std::vector<ChannelRequest>& channels)
       : folder_(std::move(folder)),
         names_(names_of_slices(folder_, is_png)),
         numbered_(numbered),
-        threshold_(threshold) {
+        threshold_(threshold),
+        has_labels_(has_labels) {
     if (names_.empty()) throw Error(folder_.string(), "", "the folder has no .png files");
+    check_value_requests(channels);
+    has_values_ = !channels.empty();
     const DecodedImage first = decode(names_[0]);
     width_ = first.width();
     height_ = first.height();
     has_colors_ = first.channels() >= 3;
+    for (const ChannelRequest& channel : channels)
+      channels_.push_back(
+          channel_spec(channel, has_8_bits(first) ? ChannelKind::kU8 : ChannelKind::kU16));
     const VolumeSize size{static_cast<std::uint64_t>(width_), static_cast<std::uint64_t>(height_),
                           place_of(names_.size() - 1) + 1};
     check_volume_size(folder_, size);
@@ -38,6 +50,8 @@ class PngSlices : public VoxelSource {
 
   bool has_points() const override { return false; }
   bool has_colors() const override { return has_colors_; }
+  bool has_labels() const override { return has_labels_; }
+  std::vector<ChannelSpec> channels() const override { return channels_; }
   std::optional<Grid> grid() const override { return grid_; }
   std::vector<std::string> warnings() const override {
     const std::string missing = numbered_ ? "" : missing_slices(names_);
@@ -63,8 +77,17 @@ class PngSlices : public VoxelSource {
     const std::filesystem::path path = folder_ / name;
     const MappedFile mapping(path, MappedFile::Access::kSequential, kMaxImageFile);
     const std::span<const std::byte> bytes = mapping.bytes();
-    return decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
-                      path.string());
+    DecodedImage image = decode_png(
+        {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, path.string());
+    if (!has_labels_ && !has_values_) return image;
+    const std::string wanted = has_labels_ ? "labels" : "channels";
+    if (image.channels() >= 3) throw Error(path.string(), "header", "holds colours, not " + wanted);
+    // libpng has spread fewer bits over 0 to 255.
+    if (const int bits = std::to_integer<int>(bytes[kBitDepth]); bits < 8)
+      throw Error(
+          path.string(), "header",
+          "has grey values of " + std::to_string(bits) + " bits, and " + wanted + " need 8 or 16");
+    return image;
   }
 
   void check(const DecodedImage& image, const std::string& name) const {
@@ -102,8 +125,7 @@ class PngSlices : public VoxelSource {
   void visit_slice(const DecodedImage& image, std::uint64_t z, const Test& is_set,
                    BatchedVoxels& voxels) const {
     const int channels = image.channels();
-    const bool has_8_bits = image.row_bytes() == static_cast<std::size_t>(image.width()) *
-                                                     static_cast<std::size_t>(channels);
+    const int unit = has_8_bits(image) ? 257 : 1;  // pixel() multiplies values of 8 bits by 257.
     for (int y = 0; y < height_; ++y)
       for (int x = 0; x < width_; ++x) {
         const DecodedImage::Rgba pixel = image.pixel(x, y);
@@ -111,8 +133,10 @@ class PngSlices : public VoxelSource {
         const std::uint16_t value = channels == 4 && !has_opaque_alpha_
                                         ? pixel[3]
                                         : std::max({pixel[0], pixel[1], pixel[2]});
-        // pixel() multiplies values of 8 bits by 257.
-        if (!is_set(has_8_bits ? value / 257 : value)) continue;
+        const auto number = static_cast<std::uint16_t>(value / unit);
+        if (!is_set(number)) continue;
+        if (has_labels_) voxels.add_label(number);
+        if (has_values_) voxels.add_channel(number);
         const Vec3d place{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
         if (has_colors_)
           voxels.add(place, {to_8_bits(pixel[0]), to_8_bits(pixel[1]), to_8_bits(pixel[2])});
@@ -121,6 +145,10 @@ class PngSlices : public VoxelSource {
       }
   }
 
+  static bool has_8_bits(const DecodedImage& image) {
+    return image.row_bytes() ==
+           static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.channels());
+  }
   static std::uint8_t to_8_bits(std::uint16_t value) {
     return static_cast<std::uint8_t>((value + 128) / 257);
   }
@@ -129,6 +157,8 @@ class PngSlices : public VoxelSource {
   std::vector<std::string> names_;
   bool numbered_;
   std::optional<double> threshold_;
+  bool has_labels_, has_values_ = false;
+  std::vector<ChannelSpec> channels_;
   int width_ = 0, height_ = 0;
   bool has_colors_ = false;
   bool has_opaque_alpha_ = false;  ///< Programs save slices with an alpha that says nothing.
@@ -138,8 +168,10 @@ class PngSlices : public VoxelSource {
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_png_slices(const std::filesystem::path& folder,
-                                             std::optional<double> threshold, bool numbered) {
-  return std::make_unique<PngSlices>(folder, threshold, numbered);
+                                             std::optional<double> threshold, bool numbered,
+                                             const LabelRequest& labels,
+                                             const std::vector<ChannelRequest>& channels) {
+  return std::make_unique<PngSlices>(folder, threshold, numbered, wants_labels(labels), channels);
 }
 
 }  // namespace voxdag

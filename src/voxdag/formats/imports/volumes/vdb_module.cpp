@@ -3,6 +3,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -11,6 +12,8 @@
 #include "voxdag/core/io/open_input.hpp"
 #include "voxdag/core/printable.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/channels/channel_request.hpp"
+#include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/volumes/volume_grid.hpp"
 
 namespace voxdag {
@@ -42,17 +45,25 @@ struct ValueRule {
   }
 };
 
-/// Calls visit(box) for all voxels and tiles that are set: first those of leaves.
+/// Calls visit(box, value) for all voxels and tiles that are set: first those of leaves.
 template <class GridType, class Visit>
 void for_each_box(const GridType& grid, const ValueRule& is_set, const Visit& visit) {
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
     for (auto value = leaf->cbeginValueAll(); value; ++value)
       if (is_set(static_cast<double>(*value), value.isValueOn()))
-        visit(openvdb::CoordBBox(value.getCoord(), value.getCoord()));
+        visit(openvdb::CoordBBox(value.getCoord(), value.getCoord()), *value);
   auto tile = grid.tree().cbeginValueAll();
   tile.setMaxDepth(GridType::TreeType::ValueAllCIter::LEAF_DEPTH - 1);
   for (; tile; ++tile)
-    if (is_set(static_cast<double>(*tile), tile.isValueOn())) visit(tile.getBoundingBox());
+    if (is_set(static_cast<double>(*tile), tile.isValueOn())) visit(tile.getBoundingBox(), *tile);
+}
+
+/// Returns the kind of channel for the values of a grid.
+ChannelKind kind_of_grid(const openvdb::GridBase& grid) {
+  if (grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>())
+    return ChannelKind::kF32;
+  const bool is_whole = grid.isType<openvdb::Int32Grid>() || grid.isType<openvdb::Int64Grid>();
+  return is_whole ? ChannelKind::kI32 : ChannelKind::kU8;
 }
 
 Vec3d vector_of(const openvdb::Vec3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -60,44 +71,63 @@ Vec3l vector_of(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
 
 class Vdb : public VoxelSource {
  public:
-  Vdb(std::filesystem::path path, std::optional<double> threshold, const std::string& grid)
-      : path_(std::move(path)), rule_{false, threshold} {
+  Vdb(std::filesystem::path path, std::optional<double> threshold, const std::string& grid,
+      bool has_labels, const std::vector<ChannelRequest>& channels)
+      : path_(std::move(path)), rule_{false, threshold}, has_labels_(has_labels) {
     open_input(path_);  // Throws the usual errors.
-    read_grid(grid);
+    read_grids(grid, channels);
     rule_.is_level_set = vdb_->getGridClass() == openvdb::GRID_LEVEL_SET;
     find_extent();
   }
 
   bool has_points() const override { return false; }
   bool has_place() const override { return true; }
+  bool has_labels() const override { return has_labels_; }
+  std::vector<ChannelSpec> channels() const override { return channels_; }
   std::optional<Grid> grid() const override { return map_.grid(); }
   std::vector<std::string> warnings() const override { return warnings_; }
 
   void visit_all(const VisitBatch& visit) const override {
     const VisitBatch visit_cubes = [&](const VoxelBatch& batch) { map_.visit_cubes(batch, visit); };
     BatchedVoxels voxels(visit_cubes);
+    std::vector<std::function<double(const openvdb::Coord&)>> channels;
+    for (const openvdb::GridBase::ConstPtr& of_channel : channel_grids_)
+      with_grid(*of_channel, [&](const auto& grid) {
+        channels.push_back([values = grid.getConstAccessor()](const openvdb::Coord& at) {
+          return static_cast<double>(values.getValue(at));
+        });
+      });
     with_grid(*vdb_, [&](const auto& grid) {
-      for_each_box(grid, rule_, [&](const openvdb::CoordBBox& box) {
+      for_each_box(grid, rule_, [&](const openvdb::CoordBBox& box, auto value) {
         const Vec3l lo = vector_of(box.min()) - lo_, hi = vector_of(box.max()) - lo_;
         for (std::int64_t z = lo.z; z <= hi.z; ++z)
           for (std::int64_t y = lo.y; y <= hi.y; ++y)
-            for (std::int64_t x = lo.x; x <= hi.x; ++x)
+            for (std::int64_t x = lo.x; x <= hi.x; ++x) {
+              if (has_labels_) voxels.add_label(label_of(value));
+              for (const auto& value_at : channels)
+                voxels.add_channel(value_at(box.min().offsetBy(static_cast<int>(x - lo.x),
+                                                               static_cast<int>(y - lo.y),
+                                                               static_cast<int>(z - lo.z))));
               voxels.add(static_cast<Vec3d>(Vec3l{x, y, z}));
+            }
       });
     });
     voxels.finish();
   }
 
  private:
-  /// Reads the grid of this name; if it is empty, the default of open_vdb().
-  void read_grid(const std::string& wanted) {
+  /// Reads the grid of this name; if it is empty, the default of open_vdb(). Reads those of the
+  /// channels.
+  void read_grids(const std::string& wanted, const std::vector<ChannelRequest>& channels) {
     openvdb::initialize();
     openvdb::io::File file(path_.string());
     file.open(/*delayLoad=*/false);
     std::string chosen, names;
     std::size_t count = 0;
+    std::vector<std::string> readable;
     for (auto name = file.beginName(); name != file.endName(); ++name) {
       if (!with_grid(*file.readGridMetadata(*name), [](const auto&) {})) continue;
+      readable.push_back(*name);
       names += (count++ == 0 ? "" : ", ") + name_in_quotes(*name);
       const bool is_better =
           wanted.empty() ? chosen.empty() || *name == "density" : *name == wanted;
@@ -111,13 +141,27 @@ class Vdb : public VoxelSource {
       warnings_.push_back("has the grids " + names + "; " + name_in_quotes(chosen) +
                           " is read, --grid chooses another one");
     vdb_ = file.readGrid(chosen);
+    for (const ChannelRequest& channel : channels) {
+      ChannelRequest of_grid = channel;
+      if (channel.field == "value" && std::count(readable.begin(), readable.end(), "value") == 0)
+        of_grid.field = chosen;
+      const std::string name = readable[find_channel_fields(
+          {of_grid}, readable.size(), [&](std::size_t i) { return readable[i]; })[0]];
+      const auto grid = name == chosen ? vdb_ : file.readGrid(name);
+      if (grid->transform() != vdb_->transform())
+        throw Error(path_.string(), "",
+                    "grid " + name_in_quotes(name) + " has another transform than " +
+                        name_in_quotes(chosen) + ", whose voxels are read");
+      channels_.push_back(channel_spec(channel, kind_of_grid(*grid)));
+      channel_grids_.push_back(grid);
+    }
   }
 
   void find_extent() {
     constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
     Vec3l lo{kNone, kNone, kNone}, hi{-kNone, -kNone, -kNone};
     with_grid(*vdb_, [&](const auto& grid) {
-      for_each_box(grid, rule_, [&](const openvdb::CoordBBox& box) {
+      for_each_box(grid, rule_, [&](const openvdb::CoordBBox& box, const auto&) {
         lo = min(lo, vector_of(box.min()));
         hi = max(hi, vector_of(box.max()));
       });
@@ -155,15 +199,19 @@ class Vdb : public VoxelSource {
   std::filesystem::path path_;
   openvdb::GridBase::ConstPtr vdb_;
   ValueRule rule_;
+  bool has_labels_;
+  std::vector<ChannelSpec> channels_;
+  std::vector<openvdb::GridBase::ConstPtr> channel_grids_;
   Vec3l lo_;
   VolumeMap map_;
   std::vector<std::string> warnings_;
 };
 
 VoxelSource* open_vdb_in_module(const std::filesystem::path& path, std::optional<double> threshold,
-                                const std::string& grid) {
+                                const std::string& grid, bool has_labels,
+                                const std::vector<ChannelRequest>& channels) {
   try {
-    return new Vdb(path, threshold, grid);
+    return new Vdb(path, threshold, grid, has_labels, channels);
   } catch (const openvdb::Exception& error) {
     throw Error(path.string(), "", "OpenVDB: " + printable(error.what()));
   } catch (const std::ios_base::failure& error) {

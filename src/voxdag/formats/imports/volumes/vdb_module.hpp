@@ -7,7 +7,8 @@ namespace voxdag {
 
 struct VdbModule {
   VoxelSource* (*open)(const std::filesystem::path& path, std::optional<double> threshold,
-                       const std::string& grid);
+                       const std::string& grid, bool has_labels,
+                       const std::vector<ChannelRequest>& channels);
 };
 
 /// The name of its file, and of the VdbModule in it.

@@ -123,6 +123,8 @@ VolumeMap::VolumeMap(const std::filesystem::path& path, const VolumeSize& size,
 void VolumeMap::visit_cubes(const VoxelBatch& voxels, const VisitBatch& visit) const {
   if (is_identity_) return visit(voxels);
   BatchedVoxels out(visit);
+  const std::size_t each =
+      voxels.places.empty() ? 0 : voxels.channels.size() / voxels.places.size();
   for (std::size_t i = 0; i < voxels.places.size(); ++i) {
     Vec3d lo, hi;
     for (int v = 0; v < 3; ++v) {
@@ -136,8 +138,7 @@ void VolumeMap::visit_cubes(const VoxelBatch& voxels, const VisitBatch& visit) c
       for (double y = lo.y; y < hi.y; ++y)
         for (double x = lo.x; x < hi.x; ++x) {
           if (!voxels.labels.empty()) out.add_label(voxels.labels[i]);
-          // A volume has one channel at most.
-          if (!voxels.channels.empty()) out.add_channel(voxels.channels[i]);
+          for (std::size_t c = 0; c < each; ++c) out.add_channel(voxels.channels[i * each + c]);
           if (voxels.colors.empty())
             out.add({x, y, z});
           else

@@ -1,6 +1,7 @@
 #pragma once
 /// Opens files of volumes. `threshold`: values that are at least this set their voxel; without it,
-/// all values other than 0 do. `channels`: at most one, of the field "value".
+/// all values other than 0 do. `labels`: without a field. `channels`: at most one, of the field
+/// "value".
 #include <string_view>
 
 #include "voxdag/formats/imports/voxel_source.hpp"
@@ -50,9 +51,12 @@ std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
 /// an RGBA pixel its alpha, unless that is opaque in all slices. Values are 0 to 255, or 0 to 65535
 /// in files of 16 bits. The volume has colours if the first slice has; all slices are grey if the
 /// first one is. Images are decoded one at a time.
+///
+/// Throws Error if labels or channels are wanted of colours, palettes, or grey of less than 8 bits.
 std::unique_ptr<VoxelSource> open_png_slices(const std::filesystem::path& folder,
-                                             std::optional<double> threshold,
-                                             bool numbered = false);
+                                             std::optional<double> threshold, bool numbered = false,
+                                             const LabelRequest& labels = {},
+                                             const std::vector<ChannelRequest>& channels = {});
 
 /// Opens a volume of TIFF: the pages of a file, or the files of a folder whose names end in .tif or
 /// .tiff, sorted like those of open_png_slices(). Page k has the voxels (x, y, k). Pages of one
@@ -88,15 +92,18 @@ bool is_before_by_numbers(std::string_view a, std::string_view b);
 /// if there are others. Its active voxels are set; with a threshold those of them whose value is at
 /// least that. A level set without a threshold sets its inside instead: all voxels with values
 /// below 0. Tiles set all their voxels. Voxels are numbered from the least coordinates that are
-/// set; the transform says where their centres are.
+/// set; the transform says where their centres are. Labels are the values that set voxels. Channels
+/// are the values, there, of the grids that their fields name, or of the grid itself for "value".
+/// Throws Error for a grid that has another transform.
 ///
 /// OpenVDB reads the whole file into memory, and is not made for files that one does not trust: a
 /// damaged file can crash it. Its exceptions become Error. It is in a module of its own,
 /// voxdag_vdb.so, which is built where OpenVDB is installed and found as shared libraries are.
 /// Throws Error if there is none.
 std::unique_ptr<VoxelSource> open_vdb(const std::filesystem::path& path,
-                                      std::optional<double> threshold,
-                                      const std::string& grid = {});
+                                      std::optional<double> threshold, const std::string& grid = {},
+                                      const LabelRequest& labels = {},
+                                      const std::vector<ChannelRequest>& channels = {});
 
 /// Opens a scene of MagicaVoxel: every visible model, with the colours of the palette. A voxel
 /// has its index in the palette as label, and keeps its coordinates x, y, z (z is up), less the
