@@ -102,7 +102,7 @@ Vec3i voxel_at(const Grid& grid, Vec3d place) {
 Svdag carve(const SvdagView& dag, Vec3i seed, Vec3i half, CarveForm form, Work work) {
   const bool is_in_grid = static_cast<std::uint32_t>(seed.x | seed.y | seed.z) >> dag.levels == 0;
   const Svdag full = full_grid(dag.levels);
-  const Box3i box = moments_of(dag, work).bounds;
+  const Box3i box = bounds_of(dag, work);
   Svdag reached;
   {
     const Svdag within = crop(full.view(), box, work);
@@ -123,7 +123,7 @@ Svdag carve(const SvdagView& dag, Vec3i seed, Vec3i half, CarveForm form, Work w
     const Svdag thick = dilate(space.view(), 1, Neighbours::k26, work);
     return combine(thick.view(), space.view(), SetOperation::kDifference, work);
   }
-  const Box3i used = moments_of(space.view(), work).bounds;
+  const Box3i used = bounds_of(space.view(), work);
   const Svdag solid = crop(full.view(), {used.lo - Vec3i{1, 1, 1}, used.hi + Vec3i{1, 1, 1}}, work);
   return combine(solid.view(), space.view(), SetOperation::kDifference, work);
 }

@@ -38,6 +38,10 @@ class AxisRule {
     return simplified(0, key);
   }
 
+  void prefetch(int, const Key& key) const {
+    for (const std::uint32_t node : key) source_.prefetch(node);
+  }
+
   void children(int level, const Key& key, Key (&keys)[8]) const {
     const int below = levels_ - level - 1;
     for (int child = 0; child < 8; ++child) {
@@ -207,8 +211,7 @@ Svdag copy_of(const SvdagView& dag) {
 Svdag join_box(const SvdagView& dag, Vec3i half, bool is_union, Work work) {
   Svdag result = copy_of(dag);
   const int side = 1 << dag.levels;
-  const Box3i bounds =
-      std::max({half.x, half.y, half.z}) > 1 ? moments_of(dag, work).bounds : Box3i{};
+  const Box3i bounds = std::max({half.x, half.y, half.z}) > 1 ? bounds_of(dag, work) : Box3i{};
   for (int axis = 0; axis < 3; ++axis) {
     assert(half[axis] >= 0);
     for (int reach = 0; reach < std::min(half[axis], side);) {

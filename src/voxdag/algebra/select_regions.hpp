@@ -49,6 +49,7 @@ template <class Selection>
 class SelectRule {
  public:
   static constexpr std::size_t kWords = 3;
+  static constexpr bool kOneThread = true;  ///< children() numbers sets.
   using Key = std::array<std::uint32_t, kWords>;
 
   SelectRule(const Regions& regions, const Selection& selection)

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/huge_pages.hpp"
 
 namespace voxdag {
 
@@ -148,7 +149,10 @@ class CountedAllocator {
     const std::size_t bytes = count * sizeof(T);
     if (budget_ != nullptr) budget_->reserve(bytes);
     try {
-      return static_cast<T*>(::operator new (bytes, std::align_val_t{alignof(T)}));
+      void* const memory = ::operator new (bytes, std::align_val_t{alignof(T)});
+      constexpr std::size_t kLarge = std::size_t{8} << 20;
+      if (bytes >= kLarge) prefer_huge_pages(memory, bytes);
+      return static_cast<T*>(memory);
     } catch (...) {
       if (budget_ != nullptr) budget_->release(bytes);
       throw;

@@ -93,6 +93,18 @@ class NumberTable {
     return NumberSlots::number_of(found);
   }
 
+  /// Asks for the slot where a search for this hash begins.
+  void prefetch(std::uint64_t hash) const {
+    __builtin_prefetch(slots_.data() + view().first_of(NumberSlots::tag_of(hash)), 1);
+  }
+  /// Returns a number that find_or_add() is likely to compare first, or kMaxNumbers.
+  std::uint32_t likely(std::uint64_t hash) const {
+    if (slots_.empty()) return NumberSlots::kMaxNumbers;
+    const std::uint32_t tag = NumberSlots::tag_of(hash);
+    const std::uint64_t slot = slots_[view().first_of(tag)];
+    return slot >> 32 == tag ? NumberSlots::number_of(slot) : NumberSlots::kMaxNumbers;
+  }
+
   /// Removes the numbers for which keep(number) is false. Throws OverMemory.
   template <class Keep>
   void retain(const Keep& keep) {
@@ -111,6 +123,7 @@ class NumberTable {
   static NumberSlots view(CountedVector<std::uint64_t>& slots) {
     return {slots.data(), slots.size()};
   }
+  NumberSlots view() const { return {const_cast<std::uint64_t*>(slots_.data()), slots_.size()}; }
 
   void grow() {
     constexpr std::size_t kFirst = 64;

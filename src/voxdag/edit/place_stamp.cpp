@@ -15,13 +15,13 @@ namespace voxdag {
 PlacedStamp place_stamp(const SvdagView& stamp, const Grid& stamp_grid, const StampPlace& place,
                         const Grid& grid, Work work) {
   const Svdag turned = reorient(stamp, place.orientation, work);
-  const Box3i box = moments_of(turned.view(), work).bounds;
+  const Box3i box = bounds_of(turned.view(), work);
   const Vec3i size = box.hi - box.lo;
   const double off = std::abs(stamp_grid.voxel_size / grid.voxel_size - 1);
   if (!(off * std::max({size.x, size.y, size.z, 1}) <= 1e-3))
     throw Error("the stamp's voxels have sides of " + number_text(stamp_grid.voxel_size) +
                 ", and those of the DAG " + number_text(grid.voxel_size));
-  const Vec3i source_lo = moments_of(stamp, work).bounds.lo;
+  const Vec3i source_lo = bounds_of(stamp, work).lo;
   const Vec3d corner = grid.to_grid(place.at.value_or(stamp_grid.to_world(Vec3d(source_lo))));
   Vec3i lo;
   for (int axis = 0; axis < 3; ++axis) {

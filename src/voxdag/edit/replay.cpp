@@ -32,7 +32,7 @@ std::optional<ReplayBall> parse_replay_line(std::string_view line) {
   return ReplayBall{*radius, fields[5] == "true"};
 }
 
-ReplayPlaces::ReplayPlaces(const SvdagView& scene) : box_(moments_of(scene, {}).bounds) {}
+ReplayPlaces::ReplayPlaces(const SvdagView& scene) : box_(bounds_of(scene, {})) {}
 
 BallShape ReplayPlaces::place(const ReplayBall& ball, const SvdagView& now) {
   Vec3d point;

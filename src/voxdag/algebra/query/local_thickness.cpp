@@ -98,7 +98,7 @@ void paint(const Field& field, const Ball& ball, std::int32_t from, std::int32_t
 }  // namespace
 
 LocalThickness local_thickness(const SvdagView& dag, Work work) {
-  LocalThickness result{moments_of(dag, work).bounds, CountedVector<std::uint32_t>(work.memory)};
+  LocalThickness result{bounds_of(dag, work), CountedVector<std::uint32_t>(work.memory)};
   if (dag.is_empty()) return result;
   result.box.lo = result.box.lo - Vec3i{1, 1, 1};
   result.box.hi = result.box.hi + Vec3i{1, 1, 1};

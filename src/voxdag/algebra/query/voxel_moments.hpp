@@ -14,6 +14,9 @@ struct VoxelMoments {
   Vec3d centre{};  ///< Mean of the centres of the voxels, in voxels, rounded once; empty: 0.
 };
 
+/// VoxelMoments::bounds alone: less time, and a quarter of the memory.
+Box3i bounds_of(const SvdagView& dag, Work work);
+
 /// Time and memory (80 bytes per node of two levels) grow with the nodes, not with the voxels.
 /// Throws OverMemory and Cancelled.
 VoxelMoments moments_of(const SvdagView& dag, Work work);

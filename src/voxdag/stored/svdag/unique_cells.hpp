@@ -18,17 +18,28 @@ class UniqueCells {
   explicit UniqueCells(MemoryBudget* memory) : cells_(memory), table_(memory) {}
 
   /// Returns the cell's number. Throws OverMemory, and Error if there are 2^32 - 1 cells.
-  std::uint32_t add(const T& cell) {
+  std::uint32_t add(const T& cell) { return add(cell, hash_of(cell)); }
+  /// As above, for a caller that knows hash_of(cell).
+  std::uint32_t add(const T& cell, std::uint64_t hash) {
     const auto words = std::bit_cast<Words>(cell);
     return table_.find_or_add(
-        hash_words(words.data(), kWords),
-        [&](std::uint32_t n) { return are_equal(std::bit_cast<Words>(cells_[n]), words); },
+        hash, [&](std::uint32_t n) { return are_equal(std::bit_cast<Words>(cells_[n]), words); },
         [&] {
           if (cells_.size() == NumberSlots::kMaxNumbers)
             throw Error("the DAG is too large: a level has 2^32 different cells or more");
           cells_.push_back(cell);
           return static_cast<std::uint32_t>(cells_.size() - 1);
         });
+  }
+  static std::uint64_t hash_of(const T& cell) {
+    const auto words = std::bit_cast<Words>(cell);
+    return hash_words(words.data(), kWords);
+  }
+  /// Asks for what add() reads first, some dozens of calls ahead; later, for what it reads then.
+  void prefetch(std::uint64_t hash) const { table_.prefetch(hash); }
+  void prefetch_likely(std::uint64_t hash) const {
+    const std::uint32_t number = table_.likely(hash);
+    if (number != NumberSlots::kMaxNumbers) __builtin_prefetch(cells_.data() + number);
   }
   /// Returns the cells by their numbers.
   const CountedVector<T>& cells() const { return cells_; }
@@ -58,8 +69,12 @@ class UniqueNodes {
   /// Returns the index of the node's first word among all words. Throws OverMemory, and Error if
   /// the words outgrow 32-bit pointers.
   std::uint32_t add(const std::uint32_t* node, std::size_t size) {
+    return add(node, size, hash_words(node, static_cast<int>(size)));
+  }
+  /// As above, for a caller that knows the hash of the words.
+  std::uint32_t add(const std::uint32_t* node, std::size_t size, std::uint64_t hash) {
     return table_.find_or_add(
-        hash_words(node, static_cast<int>(size)),
+        hash,
         [&](std::uint32_t start) {
           // If the first words are equal, the sizes are equal, so the other words may be read.
           const std::uint32_t* const stored = words_.data() + start;
@@ -73,6 +88,12 @@ class UniqueNodes {
           words_.insert(words_.end(), node, node + size);
           return static_cast<std::uint32_t>(start);
         });
+  }
+  /// See UniqueCells::prefetch().
+  void prefetch(std::uint64_t hash) const { table_.prefetch(hash); }
+  void prefetch_likely(std::uint64_t hash) const {
+    const std::uint32_t start = table_.likely(hash);
+    if (start != NumberSlots::kMaxNumbers) __builtin_prefetch(words_.data() + start);
   }
   const CountedVector<std::uint32_t>& words() const { return words_; }
 

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "voxdag/core/io/huge_pages.hpp"
+
 namespace voxdag {
 
 void* map_pages(std::size_t bytes, bool) noexcept {
@@ -11,6 +13,8 @@ void* map_pages(std::size_t bytes, bool) noexcept {
   if (memory != nullptr) std::memset(memory, 0, bytes);
   return memory;
 }
+
+void prefer_huge_pages(void*, std::size_t) noexcept {}
 
 std::uint64_t bytes_to_map(std::uint64_t bytes, std::uint64_t most) noexcept {
   constexpr std::uint64_t kRoom = std::uint64_t{32} << 20;

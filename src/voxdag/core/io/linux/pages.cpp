@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "voxdag/core/io/huge_pages.hpp"
 #include "voxdag/core/thread_sanitizer.hpp"
 
 namespace voxdag {
@@ -28,10 +29,18 @@ void* map_pages(std::size_t bytes, bool may_be_huge) noexcept {
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
   const std::size_t used = (bytes + page - 1) / page * page;
   if (used < bytes + slack - head) ::munmap(begin + used, bytes + slack - head - used);
-#ifdef MADV_HUGEPAGE
-  ::madvise(begin, bytes, MADV_HUGEPAGE);
-#endif
+  prefer_huge_pages(begin, bytes);
   return begin;
+}
+
+void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) noexcept {
+#ifdef MADV_HUGEPAGE
+  // Whole huge pages alone: their neighbours may belong to others.
+  const auto begin = reinterpret_cast<std::uintptr_t>(memory);
+  const std::uintptr_t first = (begin + kHugePage - 1) & ~(kHugePage - 1);
+  const std::uintptr_t last = (begin + bytes) & ~(kHugePage - 1);
+  if (last > first) ::madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+#endif
 }
 
 std::uint64_t bytes_to_map(std::uint64_t, std::uint64_t most) noexcept { return most; }
