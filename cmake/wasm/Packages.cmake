@@ -79,8 +79,13 @@ c_library(jpeg JPEG::JPEG ${jpeg} INCLUDES ${jpeg} ${PROJECT_BINARY_DIR}/jpeg SO
   jquant2.c jutils.c jmemmgr.c jmemnobs.c jaricom.c jcarith.c jdarith.c jsimd_none.c)
 
 debian_source(webp libw/libwebp/libwebp_1.2.4.orig.tar.gz 7bf5a8a28cc69bcfa8cb214f2c3095703c6b73ac5fba4d5480c205331d9494df)
-file(GLOB webp_sources RELATIVE ${webp} ${webp}/src/dec/*.c ${webp}/src/dsp/*.c ${webp}/src/utils/*.c)
-list(FILTER webp_sources EXCLUDE REGEX "dsp/.*_(mips32|mips_dsp_r2|msa|neon|sse2|sse41)\\.c|dsp/(cost|enc|lossless_enc|ssim)\\.c|encode")
+# Tests alone encode.
+file(GLOB webp_sources RELATIVE ${webp} ${webp}/src/dec/*.c ${webp}/src/enc/*.c ${webp}/src/dsp/*.c ${webp}/src/utils/*.c
+  ${webp}/sharpyuv/*.c)
+list(FILTER webp_sources EXCLUDE REGEX "(dsp|sharpyuv)/.*_(mips32|mips_dsp_r2|msa|neon|sse2|sse41)\\.c")
+if(NOT VOXDAG_BUILD_TESTS)
+  list(FILTER webp_sources EXCLUDE REGEX "sharpyuv/|enc/|dsp/(cost|enc|lossless_enc|ssim)\\.c|encode")
+endif()
 c_library(webp WebP::webp ${webp} INCLUDES ${webp}/src ${webp} SOURCES ${webp_sources})
 
 debian_source(expat e/expat/expat_2.5.0.orig.tar.gz ab00ee05c7067fd10a35c5d2a4922ebba746ddd50ff83b79c828da17bbdf1757)
