@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "support/with_threads.hpp"
 #include "voxel_grid.hpp"
 
 namespace voxdag {
@@ -50,6 +51,20 @@ TEST(Grow, DilationAndErosionAreThoseOfTheVoxels) {
               << set.name << ", " << steps << " steps, " << levels << " levels";
         }
     }
+}
+
+TEST(Grow, ThreadsShareTheCellsOfALargeLevel) {
+  constexpr int kLevels = 7;
+  std::mt19937 rng(3);
+  const std::vector<Vec3i> voxels = voxels_where(kLevels, [&](Vec3i) { return rng() % 50 == 0; });
+  const VoxelGrid grid(kLevels, voxels);
+  const Svdag dag = brute_svdag(kLevels, voxels);
+  const Svdag expected = VoxelGrid::dag_of(kLevels, [&](Vec3i v) {
+    return !all_near(v, 1, Neighbours::k26, [&](Vec3i p) { return !grid.contains(p); });
+  });
+  for (const std::size_t threads : {1u, 2u, 5u})
+    EXPECT_EQ(with_threads(threads, [&] { return dilate(dag.view(), 1, Neighbours::k26); }),
+              expected);
 }
 
 TEST(Grow, AVoxelOfALargeGridBecomesACube) {
