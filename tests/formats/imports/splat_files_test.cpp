@@ -27,6 +27,23 @@ std::string zstd_of(const std::string& bytes) {
   return frame + bytes;
 }
 
+/// Returns what a file of version 4 has after its 15th byte: the number of streams, where their
+/// table is, the table, and the streams of the arrays that are not empty.
+std::string spz_streams(const std::vector<std::string>& arrays) {
+  std::string head, table, streams;
+  for (const std::string& array : arrays) {
+    if (array.empty()) continue;
+    const std::string packed = zstd_of(array);
+    put(table, packed.size(), 8);
+    put(table, array.size(), 8);
+    streams += packed;
+  }
+  put(head, table.size() / 16, 1);
+  put(head, 32, 4);
+  head += std::string(12, '\0');
+  return head + table + streams;
+}
+
 /// What a file says of a splat.
 struct PlainSplat {
   Vec3d center;
@@ -136,20 +153,7 @@ TEST_F(SplatFiles, SpzIsRead) {
       if (version < 4) {
         bytes += '\0' + places + alphas + colors + scales + rotations + harmonics;
       } else {
-        std::string table, streams;
-        const std::string* const arrays[] = {&places, &alphas,    &colors,
-                                             &scales, &rotations, &harmonics};
-        for (const std::string* const array : arrays) {
-          if (array->empty()) continue;
-          const std::string packed = zstd_of(*array);
-          put(table, packed.size(), 8);
-          put(table, array->size(), 8);
-          streams += packed;
-        }
-        put(bytes, table.size() / 16, 1);
-        put(bytes, 32, 4);
-        bytes += std::string(12, '\0') + table;
-        bytes += streams;
+        bytes += spz_streams({places, alphas, colors, scales, rotations, harmonics});
       }
       write("s.spz", bytes);
       expect("s.spz", splats);
