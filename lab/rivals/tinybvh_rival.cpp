@@ -15,11 +15,11 @@ tinybvh::bvhvec3 to_tinybvh(Vec3d v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// What tinybvh needs of a ray. It has no t_min: the ray starts there.
+/// A ray for tinybvh, whose rays have no t_min: the origin is the point at voxdag's t_min.
 struct TinybvhRay {
   tinybvh::bvhvec3 origin, direction, inverse;
   float length = 0;
-  float t_min = 0, scale = 0;  ///< voxdag's t is t_min + scale * the distance from `origin`.
+  float t_min = 0, scale = 0;  ///< voxdag's t is t_min + scale * distance from `origin`.
 
   TinybvhRay(const WorldRay& world, Vec3d mesh_origin) : t_min(world.t_min) {
     const double speed = std::sqrt(dot(world.direction, world.direction));

@@ -44,15 +44,8 @@ std::optional<SolidRule> rule_of(const py::object& solid) {
 AttributeOptions with_channels(const py::object& channels, AttributeOptions options) {
   if (channels.is_none()) return options;
   if (py::isinstance<py::str>(channels)) return with_channels(channels.attr("split")(","), options);
-  for (const py::handle name : channels) {
-    const std::string word = py::str(name.cast<py::str>().attr("strip")());
-    if (word == "metallic")
-      options.metallic = true;
-    else if (word == "roughness")
-      options.roughness = true;
-    else
-      throw py::value_error("\"" + word + "\" is neither metallic nor roughness");
-  }
+  for (const py::handle name : channels)
+    options.add_channel(name.cast<py::str>().attr("strip")().cast<std::string>());
   return options;
 }
 
@@ -75,9 +68,8 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
     dag = fill_solid(cover.view(), mesh, metadata.grid, {*solid}, work);
   }
   DagAttributes attributes;
-  const bool has_channels = options.metallic || options.roughness;
-  if (options.colors || has_channels) {
-    const SurfaceShading shading(mesh, source.appearance, &warnings, work, has_channels);
+  if (options.colors || options.has_channels()) {
+    const SurfaceShading shading(mesh, source.appearance, &warnings, work, options.has_channels());
     auto cut =
         cuts_alpha ? cut_alpha(mesh, metadata.grid, dag.view(), shading, work) : std::nullopt;
     if (cut) {
@@ -165,16 +157,15 @@ DagPointer build_file(const std::filesystem::path& path, std::optional<std::int6
   const std::optional<SolidRule> rule = rule_of(solid);
   AttributeOptions attributes = with_channels(channels, {});
   attributes.colors = colors;
-  const bool has_channels = attributes.metallic || attributes.roughness;
   std::vector<std::string> warnings;
   DagPointer dag = run_work([&](Work work) {
     const ReadOptions options{.work = work};
     MeshWithAppearance source;
-    if (colors || has_channels)
+    if (colors || attributes.has_channels())
       source = read_mesh_with_appearance(path, options);
     else
       source.mesh = read_mesh(path, options);
-    if (has_channels && !has_metallic_roughness(source.appearance))
+    if (attributes.has_channels() && !has_metallic_roughness(source.appearance))
       warnings.push_back(path.string() + ": has no metallic and no roughness: channels stores 0 " +
                          "and 1 for all cells");
     return with_file_name(path.string(), [&] {

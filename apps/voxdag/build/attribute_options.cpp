@@ -25,13 +25,7 @@ bool parse_cut(const std::string& text) {
 
 /// Returns the options with the channels that --channel names.
 AttributeOptions with_channels(const std::string& text, AttributeOptions options) {
-  for (const std::string& name : parse_words(text))
-    if (name == "metallic")
-      options.metallic = true;
-    else if (name == "roughness")
-      options.roughness = true;
-    else
-      throw std::invalid_argument("\"" + name + "\" is neither metallic nor roughness");
+  for (const std::string& name : parse_words(text)) options.add_channel(name);
   return options;
 }
 

@@ -24,8 +24,7 @@ struct AttributeArguments {
   std::optional<int> levels;           ///< log2 of --attribute-resolution.
   std::optional<bool> cut;             ///< Whether --alpha is "cut"; empty: not given.
 
-  bool has_channels() const { return options.metallic || options.roughness; }
-  bool needs_shading() const { return options.colors || options.normals || has_channels(); }
+  bool needs_shading() const { return options.colors || options.normals || options.has_channels(); }
   bool needs_appearance() const { return needs_shading() || colors_if_any || cuts_alpha(); }
   bool is_wanted() const { return needs_shading() || options.materials; }
   /// Returns whether voxels that the alpha test removes are not set.

@@ -103,7 +103,7 @@ void build_dag_file(BuildArguments arguments, Session& session) {
   if (arguments.attributes.options.colors && !has_colors(source.appearance))
     print_warnings({session.subject + ": has no colours: --color stores one grey for all cells"},
                    session);
-  if (arguments.attributes.has_channels() && !has_metallic_roughness(source.appearance))
+  if (arguments.attributes.options.has_channels() && !has_metallic_roughness(source.appearance))
     print_warnings({session.subject + ": has no metallic and no roughness: --channel stores 0 and "
                                       "1 for all cells"},
                    session);
@@ -144,7 +144,8 @@ void build_dag_file(BuildArguments arguments, Session& session) {
   std::optional<SurfaceShading> shading;
   if (needs_appearance) {
     std::vector<std::string> warnings;
-    shading.emplace(mesh, source.appearance, &warnings, work, arguments.attributes.has_channels());
+    shading.emplace(mesh, source.appearance, &warnings, work,
+                    arguments.attributes.options.has_channels());
     print_warnings(warnings, session);
   }
   if (arguments.attributes.cuts_alpha()) {

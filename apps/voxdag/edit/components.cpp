@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
@@ -55,12 +56,14 @@ void run(const ComponentsArguments& arguments, Session& session) {
   if (!edit.output.empty()) check_writable(edit.output);
   MemoryBudget memory = command_budget(edit.memory_limit);
   const DagModel file(session.subject, {&memory, &session.progress});
-  const Components components(file.view(), arguments.neighbours, {&memory, &session.progress});
-  const std::vector<ComponentSizes> sizes = components.sizes();
+  std::optional<Components> components(std::in_place, file.view(), arguments.neighbours,
+                                       Work{&memory, &session.progress});
+  const std::vector<ComponentSizes> sizes = components->sizes();
   if (!edit.output.empty()) {
     const std::uint64_t least =
         arguments.largest ? (sizes.empty() ? 1 : sizes.front().voxels) : arguments.least;
-    Svdag dag = components.keep(least);
+    Svdag dag = components->keep(least);
+    components.reset();  // Their memory is that of the attributes now.
     const CommandState asked = session;
     session.quiet = asked.quiet || asked.json;
     session.json = false;

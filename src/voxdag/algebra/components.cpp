@@ -48,7 +48,7 @@ std::vector<ComponentSizes> Components::sizes() const {
   std::map<std::uint64_t, std::uint64_t, std::greater<>> counts;
   for (std::uint32_t i = 0; i < regions.counts(0, root).open; ++i)
     ++counts[regions.size(0, root, i)];
-  // How often each node that has closed components, or of which a part has, occurs.
+  // Counts how often each node that contains closed components occurs.
   UniqueCells<std::array<std::uint32_t, 1>> nodes(work_.memory);
   CountedVector<std::uint64_t> times(1, 1, work_.memory);
   nodes.add({root});

@@ -63,8 +63,8 @@ class Regions {
     std::uint64_t size = 0;
     std::uint8_t sides = 0;  ///< Bit 2a: touches the low side of axis a, 2a + 1: the high one.
   };
-  /// Of a node: where the open regions of each child begin among those of all children, then their
-  /// number, and then the region of the node that each of them belongs to.
+  /// Says which region of a node each open region of its children belongs to. `words` lists where
+  /// the regions of each child begin, then their total, then the region above each of them.
   struct RegionsAbove {
     const std::uint32_t* words;
 

@@ -16,7 +16,7 @@
 ///   children(level, key, keys)    sets the keys of the children of a cell of a level below L-2;
 ///                                 a key of kNoCell words is a cell without voxels. Threads call
 ///                                 it at the same time, unless the rule has a member kOneThread
-///   prefetch(level, key)          asks for what children() reads; a rule need not have it
+///   prefetch(level, key)          prefetches what children() reads; a rule need not have it
 ///   block(key)                    returns the voxels of a cell of level L-2, as a leaf block
 #include <algorithm>
 #include <array>
@@ -65,7 +65,7 @@ class Rewriter {
   static constexpr std::size_t kWords = Rule::kWords;
   using Key = std::array<std::uint32_t, kWords>;
   static constexpr Key kEmpty = empty_key<kWords>();
-  /// The children of some cells: a mask for each cell, then its children one by one.
+  /// The children of a run of cells: masks[i] says which children cell i has; `keys` lists them.
   struct Chunk {
     explicit Chunk(MemoryBudget* memory) : masks(memory), keys(memory), hashes(memory) {}
     CountedVector<std::uint8_t> masks;
@@ -74,7 +74,7 @@ class Rewriter {
   };
   static constexpr bool kIsOneThread = requires { Rule::kOneThread; };
   static constexpr std::size_t kChunk = 1024;  ///< Cells.
-  /// So many cells before their turn, what they read is asked for.
+  /// Prefetches run this many cells ahead.
   static constexpr std::size_t kAhead = 16;
 
   /// Finds the children of the cells from keys[begin] on.
@@ -119,7 +119,7 @@ class Rewriter {
     };
     const std::size_t chunks = (keys.size() + kChunk - 1) / kChunk;
     const auto find_chunk = [&](std::size_t i) { return chunk_below(level, keys, i * kChunk); };
-    if (chunks == 1 || kIsOneThread) {
+    if (chunks <= 1 || kIsOneThread) {
       for (std::size_t i = 0; i < chunks; ++i) {
         work_.poll();
         add_chunk(find_chunk(i));

@@ -25,7 +25,7 @@ class SourceDag {
     const std::uint32_t* words = dag_.nodes + node;
     return (child_mask(words) >> index & 1) != 0 ? child_pointer(words, index) : kNoCell;
   }
-  /// Asks for what child() reads.
+  /// Prefetches what child() reads.
   void prefetch(std::uint32_t node) const {
     if (node >= kAboveRoot) return;
     __builtin_prefetch(dag_.nodes + node);

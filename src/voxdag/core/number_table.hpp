@@ -93,7 +93,7 @@ class NumberTable {
     return NumberSlots::number_of(found);
   }
 
-  /// Asks for the slot where a search for this hash begins.
+  /// Prefetches the slot where a search for this hash begins.
   void prefetch(std::uint64_t hash) const {
     __builtin_prefetch(slots_.data() + view().first_of(NumberSlots::tag_of(hash)), 1);
   }

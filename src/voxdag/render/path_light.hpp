@@ -60,7 +60,7 @@ struct PathMirror {
   MetallicRoughness numbers;
   Vec3f color, to_viewer;
   MirroredParts parts;
-  /// Of the way on: unit length; zero: diffuse.
+  /// The direction in which the path goes on, of unit length; zero: that of a diffuse reflection.
   Vec3f direction;
   Vec3f factor;  ///< The part of the light from there that is reflected, by its probability.
 
@@ -91,7 +91,7 @@ struct PathScratch {
   Vec3f gathered[kPixels];  ///< Radiance that the pixel's paths brought, summed.
 };
 
-/// Returns the surface of a view sample on a path. `to_viewer` has unit length.
+/// Chooses how a path goes on at the surface of a view sample. `to_viewer` has unit length.
 VOXDAG_HD inline PathMirror path_mirror(const RenderSetup& setup, const ViewSample& sample,
                                         Vec3f to_viewer, PathRandom random) {
   PathMirror mirror;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 
 #include "voxdag/builders/attributes/filter_materials.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
@@ -65,6 +67,15 @@ class AttributeEncoder : public CellValueSink {
 
 }  // namespace
 
+void AttributeOptions::add_channel(std::string_view name) {
+  if (name == "metallic")
+    metallic = true;
+  else if (name == "roughness")
+    roughness = true;
+  else
+    throw std::invalid_argument("\"" + std::string(name) + "\" is neither metallic nor roughness");
+}
+
 DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
                                const SurfaceShading* shading, const AttributeOptions& options,
                                Work work) {
@@ -74,7 +85,7 @@ DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagVi
   if (options.materials)
     result.materials = filter_materials(mesh, grid, dag, result.index.view(), work, options.ids);
   const MemoryReservation material_bytes(work.memory, result.materials.view().bytes());
-  if (!options.colors && !options.normals && !options.metallic && !options.roughness) return result;
+  if (!options.colors && !options.normals && !options.has_channels()) return result;
   AttributeEncoder encoder(result.index.cells, options, work.memory);
   filter_cells(mesh, grid, dag, result.index.view(), shading, encoder, work);
   const auto finish = [](std::unique_ptr<ValueEncoder>& values, ValuePages& pages,

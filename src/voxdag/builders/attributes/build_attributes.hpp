@@ -1,6 +1,8 @@
 #pragma once
 /// Builds the attributes of a DAG: numbers of its cells, filtered and compressed colours and
 /// normals, materials, and the channels `metallic` and `roughness`.
+#include <string_view>
+
 #include "voxdag/builders/attributes/filter_cells.hpp"
 #include "voxdag/builders/attributes/filter_materials.hpp"
 #include "voxdag/core/parallel/work.hpp"
@@ -14,6 +16,9 @@ struct AttributeOptions {
   /// Channels of the kind u8: 255 stands for 1. The shading must have these numbers. With the
   /// members above, at least one is set.
   bool metallic = false, roughness = false;
+  bool has_channels() const { return metallic || roughness; }
+  /// Adds the channel "metallic" or "roughness". Throws std::invalid_argument for another name.
+  void add_channel(std::string_view name);
   TriangleIds ids;       ///< Stored instead of materials, if there are some.
   int finest_level = 0;  ///< m: cells of levels 0 to m get attributes.
   /// The largest error of a stored colour, 0 to 1: the square root of the mean of the channels'

@@ -4,8 +4,8 @@
 
 namespace voxdag {
 
-/// Asks for huge pages where `memory`, which was just allocated, has room for some of them. Tables
-/// that are read in no order need them: most reads would miss the cache of addresses, too.
+/// Asks the system to back `memory`, which was just allocated, with huge pages. Without them most
+/// reads from a large hash table miss the TLB, too.
 void prefer_huge_pages(void* memory, std::size_t bytes) noexcept;
 
 }  // namespace voxdag

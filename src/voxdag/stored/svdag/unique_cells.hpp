@@ -35,8 +35,9 @@ class UniqueCells {
     const auto words = std::bit_cast<Words>(cell);
     return hash_words(words.data(), kWords);
   }
-  /// Asks for what add() reads first, some dozens of calls ahead; later, for what it reads then.
+  /// Prefetches the slot that add() reads first. Worth it some dozens of calls before add().
   void prefetch(std::uint64_t hash) const { table_.prefetch(hash); }
+  /// Prefetches the cell that add() compares first, once its slot is there.
   void prefetch_likely(std::uint64_t hash) const {
     const std::uint32_t number = table_.likely(hash);
     if (number != NumberSlots::kMaxNumbers) __builtin_prefetch(cells_.data() + number);
