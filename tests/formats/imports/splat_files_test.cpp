@@ -13,17 +13,17 @@
 namespace voxdag {
 namespace {
 
-void append(std::string& bytes, std::uint64_t value, int count) {
+void add_little(std::string& bytes, std::uint64_t value, int count) {
   for (int i = 0; i < count; ++i) bytes += static_cast<char>(value >> 8 * i);
 }
 
 /// Returns a frame of Zstandard: one block that is stored as it is.
 std::string zstd_of(const std::string& bytes) {
   std::string frame;
-  append(frame, 0xFD2FB528, 4);
-  append(frame, 0xA0, 1);
-  append(frame, bytes.size(), 4);
-  append(frame, 1 | bytes.size() << 3, 3);
+  add_little(frame, 0xFD2FB528, 4);
+  add_little(frame, 0xA0, 1);
+  add_little(frame, bytes.size(), 4);
+  add_little(frame, 1 | bytes.size() << 3, 3);
   return frame + bytes;
 }
 
@@ -34,12 +34,12 @@ std::string spz_streams(const std::vector<std::string>& arrays) {
   for (const std::string& array : arrays) {
     if (array.empty()) continue;
     const std::string packed = zstd_of(array);
-    append(table, packed.size(), 8);
-    append(table, array.size(), 8);
+    add_little(table, packed.size(), 8);
+    add_little(table, array.size(), 8);
     streams += packed;
   }
-  append(head, table.size() / 16, 1);
-  append(head, 32, 4);
+  add_little(head, table.size() / 16, 1);
+  add_little(head, 32, 4);
   head += std::string(12, '\0');
   return head + table + streams;
 }
@@ -108,16 +108,16 @@ TEST_F(SplatFiles, SpzIsRead) {
         PlainSplat splat{};
         for (int axis = 0; axis < 3; ++axis) {
           const int fixed = static_cast<int>(random(1 << 24)) - (1 << 23);
-          append(places, static_cast<std::uint32_t>(fixed), 3);
+          add_little(places, static_cast<std::uint32_t>(fixed), 3);
           splat.center[axis] = fixed / double{1 << kBits};
         }
         const std::uint32_t alpha = random(256);
-        append(alphas, alpha, 1);
+        add_little(alphas, alpha, 1);
         splat.alpha = alpha / 255.0;
         for (std::size_t c = 0; c < 3; ++c) {
           const std::uint32_t color = random(256), scale = random(256);
-          append(colors, color, 1);
-          append(scales, scale, 1);
+          add_little(colors, color, 1);
+          add_little(scales, scale, 1);
           splat.color[c] = 0.5 + 0.28209479177387814 * (color / 255.0 - 0.5) / 0.15;
           splat.log_scale[c] = scale / 16.0 - 10;
         }
@@ -131,13 +131,13 @@ TEST_F(SplatFiles, SpzIsRead) {
             word |= (size | sign << 9) << (10 * k);
             parts.push_back((sign != 0 ? -1 : 1) * (size / 511.0) * std::sqrt(0.5));
           }
-          append(rotations, word, 4);
+          add_little(rotations, word, 4);
           xyzw = complete(parts, greatest);
         } else {
           std::vector<double> parts;
           for (int k = 0; k < 3; ++k) {
             const std::uint32_t part = random(256);
-            append(rotations, part, 1);
+            add_little(rotations, part, 1);
             parts.push_back(part / 127.5 - 1);
           }
           xyzw = complete(parts, 3);
@@ -147,9 +147,9 @@ TEST_F(SplatFiles, SpzIsRead) {
       }
       const std::string harmonics(kCount * (degree == 3 ? 45 : 0), 'h');
       std::string bytes = "NGSP";
-      append(bytes, version, 4);
-      append(bytes, kCount, 4);
-      append(bytes, degree | kBits << 8, 3);
+      add_little(bytes, version, 4);
+      add_little(bytes, kCount, 4);
+      add_little(bytes, degree | kBits << 8, 3);
       if (version < 4) {
         bytes += '\0' + places + alphas + colors + scales + rotations + harmonics;
       } else {
