@@ -18,7 +18,7 @@ class Scene {
   constructor(memory, bytes) {
     this.#memory = memory;
     const dag = this.#dag = memory.dag(), up = guessUp(dag);
-    this.info = sceneInfo(memory.info, up, 1);
+    this.info = sceneInfo(memory.info, up, 1, true);
     this.info.bounds = boundsOf(dag) ?? this.info.bounds;
     this.info.view = firstView(this.info.bounds, memory.info, up, 1);
     this.bytes = bytes;
