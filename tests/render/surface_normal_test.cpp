@@ -29,6 +29,11 @@ double degrees_between(Vec3f a, Vec3d b) {
   return std::acos(std::min(1.0, dot(static_cast<Vec3d>(a), normalized(b)))) * kDegrees;
 }
 
+SmoothSurface surface_at(const Svdag& dag, int level, Vec3i cell, Vec3f view, Vec3f face) {
+  FreshLayers layers;
+  return smooth_surface(SvdagNodes(dag.view()), level, cell, view, face, layers);
+}
+
 TEST(SurfaceNormal, IsWithinAFewDegreesOnPlanes) {
   for (const Vec3d normal :
        {Vec3d{0, 0, 1}, Vec3d{0.3, -0.2, 1}, Vec3d{1, 1, 1}, Vec3d{-1, 0.05, 0.4}}) {
@@ -41,10 +46,9 @@ TEST(SurfaceNormal, IsWithinAFewDegreesOnPlanes) {
       for (const Vec3i v : voxels) {
         const Vec3i m = v - Vec3i{32, 32, 32};
         if (dot(m, m) > 200) continue;
-        const Vec3f estimate =
-            smooth_surface(SvdagNodes(dag.view()), kLevels, v, static_cast<Vec3f>(normalized(view)),
-                           static_cast<Vec3f>(normalized(view)))
-                .normal;
+        const Vec3f estimate = surface_at(dag, kLevels, v, static_cast<Vec3f>(normalized(view)),
+                                          static_cast<Vec3f>(normalized(view)))
+                                   .normal;
         ASSERT_LT(degrees_between(estimate, unit), 4) << normal.x << ' ' << normal.y;
       }
   }
@@ -58,8 +62,8 @@ TEST(SurfaceNormal, FollowsTheRadiusOfASphere) {
   double sum = 0;
   for (const Vec3i v : voxels) {
     const Vec3d radial = normalized(static_cast<Vec3d>(v) + Vec3d{0.5, 0.5, 0.5} - centre);
-    const SmoothSurface surface = smooth_surface(
-        SvdagNodes(dag.view()), kLevels, v, static_cast<Vec3f>(radial), static_cast<Vec3f>(radial));
+    const SmoothSurface surface =
+        surface_at(dag, kLevels, v, static_cast<Vec3f>(radial), static_cast<Vec3f>(radial));
     const double error = degrees_between(surface.normal, radial);
     // On a sphere of radius 25, the surface within 4.5 cells of a cell turns by up to 10 degrees to
     // each side.
@@ -78,9 +82,9 @@ TEST(SurfaceNormal, FacesTheViewerFromBothSides) {
   const auto voxels = surface_voxels([](Vec3d p) { return p.y - 32.5; });
   const Svdag dag = brute_svdag(kLevels, voxels);
   for (const float side : {1.0f, -1.0f}) {
-    const Vec3f n = smooth_surface(SvdagNodes(dag.view()), kLevels, {20, 32, 20},
-                                   normalized(Vec3f{0.8f, side, 0}), {0, side, 0})
-                        .normal;
+    const Vec3f n =
+        surface_at(dag, kLevels, {20, 32, 20}, normalized(Vec3f{0.8f, side, 0}), {0, side, 0})
+            .normal;
     EXPECT_NEAR(n.y, side, 1e-4f);
   }
 }
@@ -88,7 +92,7 @@ TEST(SurfaceNormal, FacesTheViewerFromBothSides) {
 TEST(SurfaceNormal, IsTheViewDirectionAtALoneVoxel) {
   const Svdag dag = brute_svdag(kLevels, {{5, 6, 7}});
   const Vec3f view = normalized(Vec3f{1, 2, -3});
-  const Vec3f n = smooth_surface(SvdagNodes(dag.view()), kLevels, {5, 6, 7}, view, view).normal;
+  const Vec3f n = surface_at(dag, kLevels, {5, 6, 7}, view, view).normal;
   EXPECT_GT(dot(n, view), 0.9999f);
 }
 
@@ -96,9 +100,8 @@ TEST(SurfaceNormal, ReadsCoarserLevels) {
   const Vec3d unit = normalized(Vec3d{1, 2, 2});
   const auto voxels = surface_voxels([&](Vec3d p) { return dot(p - Vec3d{32, 32, 32}, unit); });
   const Svdag dag = brute_svdag(kLevels, voxels);
-  const Vec3f n = smooth_surface(SvdagNodes(dag.view()), 5, {16, 16, 16}, static_cast<Vec3f>(unit),
-                                 static_cast<Vec3f>(unit))
-                      .normal;
+  const Vec3f n =
+      surface_at(dag, 5, {16, 16, 16}, static_cast<Vec3f>(unit), static_cast<Vec3f>(unit)).normal;
   EXPECT_LT(degrees_between(n, unit), 6);
 }
 

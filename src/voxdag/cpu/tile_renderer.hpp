@@ -10,6 +10,7 @@
 #include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/core/parallel/work.hpp"
 #include "voxdag/cpu/beam_starts.hpp"
+#include "voxdag/cpu/layer_cache.hpp"
 #include "voxdag/render/count_steps.hpp"
 #include "voxdag/render/esvo_view_samples.hpp"
 #include "voxdag/render/render_tile.hpp"
@@ -113,7 +114,7 @@ class TileRenderer {
 
  private:
   static constexpr int kMaxPixels = kMaxTileSize * kMaxTileSize;
-  using Scratch = TileScratch<kMaxPixels, PathScratch<kMaxPixels>>;
+  using Scratch = TileScratch<kMaxPixels, PathScratch<kMaxPixels>, LayerCache>;
 
   template <class TileNodes, class TileCaster>
   int find_samples(const TileNodes& nodes, const TileCaster& caster, const ViewTile& tile,

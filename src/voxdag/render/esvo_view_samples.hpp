@@ -24,11 +24,12 @@ VOXDAG_HD inline ContourPlane deepest_contour(const EsvoView& esvo, const GridRa
   }
 }
 
-/// Does for an ESVO what view_sample_of() in voxel_view_samples.hpp does for a DAG.
-template <EsvoLayout Nodes>
+/// Does for an ESVO what view_sample_of() in voxel_view_samples.hpp does for a DAG. It has normals
+/// and contours, and needs no layers.
+template <EsvoLayout Nodes, class Layers>
 VOXDAG_HD inline ViewSample view_sample_of(const Nodes& nodes, const RenderSetup& setup,
                                            const SightLine& line, const GridRay& ray,
-                                           const EsvoHit& hit, double depth) {
+                                           const EsvoHit& hit, double depth, Layers& /*layers*/) {
   // The height to which the shapes of neighbours may rise above the visible plane: in units of the
   // slab's thickness, and in units of the cells that represent a surface at this depth.
   constexpr float kSlabs = 1.0f, kCells = 0.5f;

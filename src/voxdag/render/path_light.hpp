@@ -260,7 +260,9 @@ VOXDAG_HD inline int trace_paths(const Nodes& nodes, const Caster& caster, const
             if (!is_hit) return;
             const Vec3d away = vertex.line.origin - setup.camera.eye +
                                vertex.line.direction * ray.to_world_t(static_cast<double>(cell.t));
-            vertex.seen = view_sample_of(nodes, setup, vertex.line, ray, cell, length(away));
+            FreshLayers layers;  // Paths of neighbours part.
+            vertex.seen =
+                view_sample_of(nodes, setup, vertex.line, ray, cell, length(away), layers);
           });
       rays += active;
       int left = 0;

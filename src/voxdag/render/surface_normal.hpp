@@ -39,11 +39,17 @@ struct CovarianceMatrix {
   }
 };
 
-/// The layer of cells around a point.
+/// The layer of cells around a point, whatever the viewer.
+struct SurfaceLayer {
+  bool is_empty = true;
+  Vec3f mean{};  ///< From the point to the mean of the cells, in cells.
+  CovarianceMatrix covariance;
+};
+
+/// A layer as it is seen from one side.
 struct LayerFit {
   Vec3f normal;         ///< Unit length.
   float thickness = 0;  ///< Variance of the cells along the normal, in cells².
-  Vec3f mean{};         ///< From the point to the mean of the cells, in cells.
 };
 
 /// The smooth surface at a cell.
@@ -58,7 +64,8 @@ struct SmoothSurface {
 /// is 0.5.
 struct LayerRule {
   static constexpr float kRadius = 4.5f;  ///< Farther cells do not count.
-  static constexpr int kPower = 4;        ///< Steps of the power iteration that finds the normal.
+  static constexpr float kPerRadius2 = 1 / (kRadius * kRadius);
+  static constexpr int kPower = 4;  ///< Steps of the power iteration that finds the normal.
   /// The normal of a coarser level counts fully up to kThin, and not at all from kThick on.
   static constexpr float kThin = 0.20f, kThick = 0.30f;
   /// A layer is a plane up to kPlane, and an edge from kEdge on.
@@ -68,29 +75,20 @@ struct LayerRule {
   static constexpr int kCoarser = 2;  ///< Number of coarser levels that refine the normal.
 };
 
-/// Fits the layer around a point of `cell` of `level` (2..L); `offset`, in cells, leads from the
-/// centre of the cell to the point. `front` points to the side from which the layer is seen.
-template <class Nodes>
-VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, Vec3f offset,
-                                    Vec3f front) {
-  constexpr float kRadius2 = LayerRule::kRadius * LayerRule::kRadius;
-  // On each axis two blocks of 4³ cells cover at least 4 cells on both sides of the cell.
-  const auto first = [](std::int32_t i) { return (i >> 2) - ((i & 3) < 2 ? 1 : 0); };
-  const Vec3i block{first(cell.x), first(cell.y), first(cell.z)};
-  const CellBlocks blocks = cell_blocks(nodes, level, block);
+/// Sums over the cells of a layer, with weights that fall from 1 at the point to 0 at kRadius.
+struct LayerSums {
   float weight = 0;
-  Vec3f mean{};
-  CovarianceMatrix moments;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3i at = block + child_offset(corner);
-    std::uint64_t cells = blocks.masks[corner];
-    const Vec3f base = static_cast<Vec3f>(at * 4 - cell) - offset;
+  Vec3f mean{};              ///< Not divided by the weight; neither are the moments.
+  CovarianceMatrix moments;  ///< About the point.
+
+  /// Adds the cells of a block of 4³ cells. `base` leads from the point to its first cell's centre.
+  VOXDAG_HD void add(std::uint64_t cells, Vec3f base) {
     for (; cells != 0; cells &= cells - 1) {
       const auto i = static_cast<std::uint32_t>(lowest_bit64(cells));
       const Vec3f d = base + Vec3f{static_cast<float>((i & 1u) | (i >> 2 & 2u)),
                                    static_cast<float>((i >> 1 & 1u) | (i >> 3 & 2u)),
                                    static_cast<float>((i >> 2 & 1u) | (i >> 4 & 2u))};
-      const float fall = 1 - dot(d, d) * (1 / kRadius2);
+      const float fall = 1 - dot(d, d) * LayerRule::kPerRadius2;
       if (fall <= 0) continue;
       const float w = fall * fall;
       weight += w;
@@ -98,52 +96,83 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
       moments.add_outer_product(d, w);
     }
   }
-  if (!(weight > 0)) return {front, 0, {}};
-  mean = mean * (1 / weight);
+  VOXDAG_HD LayerSums total() const { return *this; }
+};
+
+/// Returns the layer around the centre of `cell` of `level`, of cells of `level - up`, at least 2.
+/// `Sums` adds as LayerSums does.
+template <class Sums = LayerSums, class Nodes>
+VOXDAG_HD inline SurfaceLayer find_layer(const Nodes& nodes, int level, Vec3i cell, int up) {
+  const Vec3i around{cell.x >> up, cell.y >> up, cell.z >> up};
+  const float size = 1.0f / static_cast<float>(1 << up);
+  const Vec3f half{0.5f, 0.5f, 0.5f};
+  const Vec3f offset = (static_cast<Vec3f>(cell - around * (1 << up)) + half) * size - half;
+  // On each axis two blocks of 4³ cells cover at least 4 cells on both sides of the cell.
+  const auto first = [](std::int32_t i) { return (i >> 2) - ((i & 3) < 2 ? 1 : 0); };
+  const Vec3i block{first(around.x), first(around.y), first(around.z)};
+  const CellBlocks blocks = cell_blocks(nodes, level - up, block);
+  Sums adding;
+  for (int corner = 0; corner < 8; ++corner)
+    adding.add(blocks.masks[corner],
+               static_cast<Vec3f>((block + child_offset(corner)) * 4 - around) - offset);
+  const LayerSums sums = adding.total();
+  if (!(sums.weight > 0)) return {};
   // The variance of a cell's own extent, 1/12, keeps the matrix regular.
   CovarianceMatrix covariance{1.0f / 12, 1.0f / 12, 1.0f / 12};
-  const float scale = 1 / weight;
-  covariance.xx += moments.xx * scale;
-  covariance.yy += moments.yy * scale;
-  covariance.zz += moments.zz * scale;
-  covariance.xy += moments.xy * scale;
-  covariance.xz += moments.xz * scale;
-  covariance.yz += moments.yz * scale;
+  const float scale = 1 / sums.weight;
+  const Vec3f mean = sums.mean * scale;
+  covariance.xx += sums.moments.xx * scale;
+  covariance.yy += sums.moments.yy * scale;
+  covariance.zz += sums.moments.zz * scale;
+  covariance.xy += sums.moments.xy * scale;
+  covariance.xz += sums.moments.xz * scale;
+  covariance.yz += sums.moments.yz * scale;
   covariance.add_outer_product(mean, -1);
-  const CovarianceMatrix inverse = covariance.adjugate();
+  return {false, mean, covariance};
+}
+
+/// Returns the layer as it is seen from the side to which `front` points.
+VOXDAG_HD inline LayerFit fit_layer(const SurfaceLayer& layer, Vec3f front) {
+  if (layer.is_empty) return {front, 0};
+  const CovarianceMatrix inverse = layer.covariance.adjugate();
   Vec3f normal = front;
   for (int i = 0; i < LayerRule::kPower; ++i) normal = normalized(inverse * normal);
-  return {normal, dot(normal, covariance * normal), mean};
+  return {normal, dot(normal, layer.covariance * normal)};
 }
+
+/// Finds each layer anew.
+struct FreshLayers {
+  template <class Nodes>
+  VOXDAG_HD SurfaceLayer find(const Nodes& nodes, int level, Vec3i cell, int up) const {
+    return find_layer(nodes, level, cell, up);
+  }
+};
 
 /// Returns the surface at `cell` of `level` (2..L), with a normal of unit length. `view` is the
 /// unit vector to the viewer, `face` the normal of the face that the ray entered (or `view`). At
 /// outlines these two can lie on different sides of the layer. Then the side on which the cell lies
 /// counts as the outer side, because outlines are convex. Where an edge turns away from the viewer,
-/// the normal is `face`.
-template <class Nodes>
+/// the normal is `face`. `layers` finds the layers: FreshLayers or a LayerCache.
+template <class Nodes, class Layers>
 VOXDAG_HD inline SmoothSurface smooth_surface(const Nodes& nodes, int level, Vec3i cell, Vec3f view,
-                                              Vec3f face) {
+                                              Vec3f face, Layers& layers) {
   using Rule = LayerRule;
   const Vec3f front = normalized(view + face);
-  const LayerFit fine = fit_layer(nodes, level, cell, {}, front);
+  const SurfaceLayer layer = layers.find(nodes, level, cell, 0);
+  const LayerFit fine = fit_layer(layer, front);
   Vec3f normal = fine.normal;
   const float edge = smooth_step(Rule::kPlane, Rule::kEdge, fine.thickness);
-  if ((dot(normal, view) < 0) != (dot(normal, face) < 0) && dot(normal, fine.mean) > 0)
+  if ((dot(normal, view) < 0) != (dot(normal, face) < 0) && dot(normal, layer.mean) > 0)
     normal = -normal;
   const float outline = edge * smooth_step(Rule::kOutlineCosine, 0, dot(normal, view));
   normal = normalized(mix(normal, face, outline));
   for (int up = 1; up <= Rule::kCoarser && level - up >= 2; ++up) {
-    const Vec3i at{cell.x >> up, cell.y >> up, cell.z >> up};
-    const float size = 1.0f / static_cast<float>(1 << up);
-    const Vec3f half{0.5f, 0.5f, 0.5f};
-    const Vec3f offset = (static_cast<Vec3f>(cell - at * (1 << up)) + half) * size - half;
-    const LayerFit fit = fit_layer(nodes, level - up, at, offset, normal);
+    const LayerFit fit = fit_layer(layers.find(nodes, level, cell, up), normal);
     const float trust = smooth_step(Rule::kThick, Rule::kThin, fit.thickness);
     if (trust <= 0) break;
     normal = normalized(mix(normal, fit.normal, trust));
   }
-  return {normal, dot(normal, fine.mean), 1 - edge};
+  return {normal, dot(normal, layer.mean), 1 - edge};
 }
 
 }  // namespace voxdag

@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "voxdag/render/light_beam.hpp"
+#include "voxdag/render/surface_normal.hpp"
 #include "voxdag/render/surface_point.hpp"
 #include "voxdag/render/view_sample.hpp"
 
@@ -13,8 +14,8 @@ struct NoPathScratch {};
 
 /// Arrays for tiles of up to kPixels pixels: many for packets on the CPU, one for a GPU thread.
 /// Every array but `active` is indexed by the tile's pixel, in the order of ViewTile. `Paths` is
-/// PathScratch<kPixels> if the light may bounce.
-template <int kPixels, class Paths = NoPathScratch>
+/// PathScratch<kPixels> if the light may bounce. `Layers` finds the layers of smooth surfaces.
+template <int kPixels, class Paths = NoPathScratch, class Layers = FreshLayers>
 struct TileScratch {
   static constexpr bool kWithPaths = !std::is_same_v<Paths, NoPathScratch>;
 
@@ -36,6 +37,8 @@ struct TileScratch {
       unhindered_sum[kPixels];  ///< Luminance from all lights, and without occluders.
 
   Paths paths;
+
+  Layers layers;
 };
 
 }  // namespace voxdag

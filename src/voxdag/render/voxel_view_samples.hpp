@@ -41,11 +41,11 @@ VOXDAG_HD inline SightLine pixel_line(const RenderSetup& setup, const ViewTile& 
 }
 
 /// Returns the view sample at which a ray along `line` hit a cell, at `t`. `depth` is the distance
-/// from the camera that decides how smooth the cell looks.
-template <class Nodes>
+/// from the camera that decides how smooth the cell looks. `layers`: see smooth_surface().
+template <class Nodes, class Layers>
 VOXDAG_HD inline ViewSample voxel_view_sample(const Nodes& nodes, const RenderSetup& setup,
                                               const SightLine& line, const Hit& hit, double t,
-                                              double depth) {
+                                              double depth, Layers& layers) {
   const RenderSettings& settings = setup.settings;
   const int shift = setup.grid.levels - hit.level;
   const double cell_size = setup.grid.cell_size(hit.level);
@@ -58,7 +58,7 @@ VOXDAG_HD inline ViewSample voxel_view_sample(const Nodes& nodes, const RenderSe
   sample.normal = face;
   const Vec3i at{hit.voxel.x >> shift, hit.voxel.y >> shift, hit.voxel.z >> shift};
   if (cube < 1 && hit.level >= 2) {
-    smooth = smooth_surface(nodes, hit.level, at, view, face);
+    smooth = smooth_surface(nodes, hit.level, at, view, face, layers);
     sample.normal = normalized(mix(smooth.normal, face, cube));
   }
   sample.face = sample.normal;
@@ -101,16 +101,16 @@ VOXDAG_HD inline ViewSample cut_view_sample(const RenderSetup& setup, Vec3d dire
   return sample;
 }
 
-/// Returns the view sample at which a ray along `line` hit a cell. `depth` as above; `ray` is the
-/// line's, in the grid.
-template <class Nodes>
+/// Returns the view sample at which a ray along `line` hit a cell. `depth` and `layers` as above;
+/// `ray` is the line's, in the grid.
+template <class Nodes, class Layers>
 VOXDAG_HD inline ViewSample view_sample_of(const Nodes& nodes, const RenderSetup& setup,
                                            const SightLine& line, const GridRay& ray,
-                                           const CellHit& cell, double depth) {
+                                           const CellHit& cell, double depth, Layers& layers) {
   static_assert(!EsvoLayout<Nodes>, "see esvo_view_samples.hpp");
   const Hit hit = to_hit(ray, cell, setup.grid.levels, 0, HUGE_VALF);
   return voxel_view_sample(nodes, setup, line, hit, ray.to_world_t(static_cast<double>(cell.t)),
-                           depth);
+                           depth, layers);
 }
 
 /// Sets scratch.samples for all pixels of the tile. Returns the number of rays.
@@ -127,8 +127,9 @@ VOXDAG_HD inline int trace_view_samples(const Nodes& nodes, const Caster& caster
         const double depth = ray.to_world_t(static_cast<double>(cell.t));
         const SightLine line = pixel_line(setup, tile, pixel);
         const Vec3f cut = cell.t == ray.t_min ? cut_normal(setup.section, ray) : Vec3f{};
-        sample = dot(cut, cut) > 0 ? cut_view_sample(setup, line.direction, cell.level, depth, cut)
-                                   : view_sample_of(nodes, setup, line, ray, cell, depth);
+        sample = dot(cut, cut) > 0
+                     ? cut_view_sample(setup, line.direction, cell.level, depth, cut)
+                     : view_sample_of(nodes, setup, line, ray, cell, depth, scratch.layers);
         sample.cell = {to_hit(ray, cell, setup.grid.levels, 0, HUGE_VALF).voxel, cell.level};
       });
   return tile.width * tile.height;
