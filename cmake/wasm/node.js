@@ -1,0 +1,1 @@
+delete globalThis.fetch;  // Node would look for the module in the web.
