@@ -144,6 +144,7 @@ TEST_F(Placing, SeveralCloudsAreOne) {
   std::filesystem::create_directory(path("tiles"));
   write_text(path("tiles/a.xyz"), "0 0 0\n1 0 0\n");
   write_text(path("tiles/b.xyz"), "7 1 0\n1 0 0\n");
+  write_text(path("tiles/._b.xyz"), "the note that macOS writes beside b.xyz");
   const Json result = Json::parse(
       run({"import", path("tiles"), "--voxel-size", "1", "-o", path("t.vdag"), "--json"}));
   EXPECT_EQ(result.at("read"), 4);

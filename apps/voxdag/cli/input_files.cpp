@@ -37,7 +37,9 @@ std::vector<std::string> files_in(const std::string& folder,
   std::error_code unknown;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, unknown)) {
     const std::string name = lower_case(entry.path().filename().string());
-    if (std::any_of(endings.begin(), endings.end(),
+    // Systems keep notes beside files: macOS has ._scan.ply beside scan.ply.
+    if (!name.starts_with('.') &&
+        std::any_of(endings.begin(), endings.end(),
                     [&](const std::string& ending) { return name.ends_with(ending); }))
       files.push_back(entry.path().string());
   }

@@ -95,18 +95,43 @@ TEST_F(Nrrd, DataInAFileBesideTheHeader) {
   const auto error = [&](const std::string& fields) {
     return error_of_bytes("v.nhdr", header + "encoding: raw\n" + fields);
   };
-  EXPECT_TRUE(has(error("data file: ../d.raw\n"), "is not the name of a file in the folder"));
-  EXPECT_TRUE(has(error("data file: ./../d.raw\n"), "is not the name of a file in the folder"));
-  EXPECT_TRUE(has(error("data file: /etc/passwd\n"), "is not the name of a file in the folder"));
-  EXPECT_TRUE(has(error("data file: ..\n"), "is not the name of a file in the folder"));
-  EXPECT_TRUE(has(error("data file:\n"), "is not the name of a file in the folder"));
-  EXPECT_TRUE(has(error("data file: LIST\nd.raw\n"), "has no colon"));
+  EXPECT_TRUE(has(error("data file: ../e.raw\n"), "'../e.raw' is not in the folder of the header"));
+  EXPECT_TRUE(has(error("data file: ./a/../../e.raw\n"), "is not in the folder of the header"));
+  EXPECT_TRUE(has(error("data file: /etc/passwd\n"), "is not in the folder of the header"));
+  EXPECT_TRUE(has(error("data file: ..\n"), "is not in the folder of the header"));
+  EXPECT_TRUE(has(error("data file:\n"), "is not the name of a data file"));
+  EXPECT_TRUE(has(error("data file: LIST\nd.raw\n"), "several files"));
   EXPECT_TRUE(has(error("data file: d%d.raw 1 2 1\n"), "several files"));
   EXPECT_TRUE(has(error("data file: none.raw\n"), "none.raw"));
   EXPECT_TRUE(has(error("data file: d.raw\nline skip: 100\n"), "before the 100 lines to skip"));
   EXPECT_TRUE(has(error("data file: d.raw\nbyte skip: 1000\n"), "before the 1000 bytes to skip"));
   EXPECT_TRUE(has(error("data file: d.raw\nbyte skip: -2\n"), "the byte skip must be"));
   EXPECT_TRUE(has(error(""), "no empty line at its end"));
+
+  // Names of other systems, and of folders that were not sent.
+  std::filesystem::create_directory(dir_ / "below");
+  write("below/f.raw", bytes);
+  write("d.raw", bytes);
+  for (const auto& [name, warnings] : {std::pair{"below/f.raw", 0u},
+                                       {"below\\f.raw", 0u},
+                                       {"./below/f.raw", 0u},
+                                       {"../d.raw", 1u},
+                                       {"/data/scan/d.raw", 1u},
+                                       {"C:\\scan\\d.raw", 1u}}) {
+    write("v.nhdr", header + "encoding: raw\ndata file: " + name + "\n");
+    EXPECT_EQ(read("v.nhdr").voxels, volume.voxels_not_0()) << name;
+    EXPECT_EQ(open("v.nhdr")->warnings().size(), warnings) << name;
+  }
+}
+
+TEST_F(Nrrd, AFourthAxisOfOneValueIsNone) {
+  const RandomVolume<std::uint16_t> volume({4, 3, 2}, 8);
+  for (const char* sizes : {"1 4 3 2", "4 3 2 1"}) {
+    write("v.nrrd", std::string("NRRD0004\ntype: uint16\nencoding: raw\nendian: little\ndimension: "
+                                "4\nsizes: ") +
+                        sizes + "\n\n" + volume.bytes());
+    EXPECT_EQ(read("v.nrrd").voxels, volume.voxels_not_0()) << sizes;
+  }
 }
 
 TEST_F(Nrrd, ColorsComeFirst) {
@@ -209,7 +234,7 @@ TEST_F(Nrrd, OtherHeadersAreRefused) {
   EXPECT_TRUE(has(header_error("type: int\nsizes: 1 1 2\n" + raw + three), "no field 'endian'"));
   EXPECT_TRUE(has(header_error(type + raw + sizes + "dimension: 2"), "must have 3 axes, or 4"));
   EXPECT_TRUE(
-      has(header_error(type + raw + "sizes: 2 2 2 1\ndimension: 4"), "must have 3 axes, or 4"));
+      has(header_error(type + raw + "sizes: 2 2 2 2\ndimension: 4"), "must have 3 axes, or 4"));
   EXPECT_TRUE(
       has(header_error(type + raw + "sizes: 2 2 2 1\ndimension: 3"), "has 4 values for 3 axes"));
   EXPECT_TRUE(has(header_error(type + raw + three + "sizes: 2 2 -2"), "'-2' is not a number"));

@@ -48,6 +48,9 @@ class Threemf : public testing::Test {
   MeshWithAppearance read(const std::string& model) const {
     return read_mesh_with_appearance(write({{"3D/3dmodel.model", model}}));
   }
+  static bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
   std::string refusal(const std::string& model) const {
     return error_of([&] { read(model); });
   }
@@ -68,6 +71,40 @@ TEST_F(Threemf, ItemsAndComponentsAreTransformed) {
   EXPECT_EQ(mesh.vertices[0], (Vec3f{8, 1, 8}));
   EXPECT_EQ(mesh.vertices[1], (Vec3f{8, 2, 8}));
   EXPECT_EQ(mesh.vertices[2], (Vec3f{6, 1, 8}));
+}
+
+TEST_F(Threemf, WhatIsOfNoBodyIsLeftOut) {
+  const std::string end = "/></triangles></mesh></object>";
+  const MeshWithAppearance read_one = read(model_3mf(
+      "<object id='1'>" + kMesh3mf + end + "<object id='2' type='other'>" + kMesh3mf + end +
+          "<object id='3'><components><component objectid='1'/><component "
+          "objectid='2'/></components></object>",
+      "<item objectid='3'/>"));
+  EXPECT_EQ(read_one.mesh.triangles.size(), 1u);
+  ASSERT_EQ(read_one.warnings.size(), 1u);
+  EXPECT_TRUE(has(read_one.warnings[0], "1 objects of the type \"other\" are left out"));
+}
+
+TEST_F(Threemf, RequiredExtensionsAreKnownOrRefused) {
+  const auto model = [](const std::string& attributes) {
+    return model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>",
+                     "<item objectid='1'/>", attributes);
+  };
+  EXPECT_EQ(read(model("requiredextensions='m'")).mesh.triangles.size(), 1u);
+  const std::string booleans =
+      " xmlns:bo='http://schemas.3mf.io/3dmanufacturing/booleanoperations/2023/07'";
+  EXPECT_EQ(read(model(booleans)).mesh.triangles.size(), 1u);
+  EXPECT_TRUE(has(refusal(model("requiredextensions='m  bo'" + booleans)),
+                  "line 1: needs an extension of 3MF that is not read: "
+                  "'http://schemas.3mf.io/3dmanufacturing/booleanoperations/2023/07'"));
+}
+
+TEST_F(Threemf, NamesOfPartsMayHaveBackslashes) {
+  EXPECT_EQ(read_mesh(write({{"3D\\3dmodel.model", model_3mf("<object id='1'>" + kMesh3mf +
+                                                                 "/></triangles></mesh></object>",
+                                                             "<item objectid='1'/>")}}))
+                .triangles.size(),
+            1u);
 }
 
 TEST_F(Threemf, UnitsBecomeMillimetres) {
@@ -113,6 +150,11 @@ TEST_F(Threemf, ColorsComeFromMaterialsAndGroups) {
   EXPECT_EQ(color_of("", " pid='6' p1='0'"), (Rgb{0, 128, 0}));
   EXPECT_EQ(color_of("", " pid='6' p1='0' p2='1' p3='0'"), (Rgb{255, 255, 255}));
   EXPECT_EQ(color_of("", ""), (Rgb{204, 204, 204}));
+  const MeshWithAppearance late = read(model_3mf(
+      "<object id='1' pid='5' pindex='0'>" + kMesh3mf + "/></triangles></mesh></object>" + groups,
+      "<item objectid='1'/>"));
+  ASSERT_EQ(late.warnings.size(), 1u);
+  EXPECT_TRUE(has(late.warnings[0], "a group of materials after the objects that name it"));
 }
 
 TEST_F(Threemf, ModelsOfOtherPartsAreRead) {
@@ -127,9 +169,6 @@ TEST_F(Threemf, ModelsOfOtherPartsAreRead) {
              {"3D/other.model",
               model_3mf("<object id='1'>" + kMesh3mf + "/></triangles></mesh></object>", "")}}));
   EXPECT_EQ(mesh.triangles.size(), 1u);
-}
-
-TEST_F(Threemf, RefusesWhatIsDamagedOrWouldGrow) {
   const auto has = [](const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
   };

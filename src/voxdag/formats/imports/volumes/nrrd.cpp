@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 
 #include "voxdag/core/error.hpp"
@@ -35,6 +36,27 @@ void skip_to_data(const NrrdHeader& header, DenseFile& file) {
   file.begin += skip;
 }
 
+/// Returns the file of the data: `name`, in the folder of the header or in one below. If it names
+/// another place, or does not exist, a file of the same name beside the header stands for it.
+std::filesystem::path detached_data(const std::filesystem::path& header, std::string name,
+                                    std::vector<std::string>& warnings) {
+  const std::filesystem::path folder = header.parent_path();
+  const auto exists = [](const std::filesystem::path& path) {
+    std::error_code unknown;
+    return std::filesystem::is_regular_file(path, unknown);
+  };
+  if (!exists(folder / name)) std::replace(name.begin(), name.end(), '\\', '/');
+  const bool is_below = !name.starts_with('/') && ("/" + name + "/").find("/../") == name.npos;
+  const std::filesystem::path beside = folder / name.substr(name.rfind('/') + 1);
+  if (is_below && (exists(folder / name) || !exists(beside))) return folder / name;
+  if (!exists(beside))
+    throw Error(header.string(), "data file",
+                name_in_quotes(name) + " is not in the folder of the header");
+  warnings.push_back("reads " + name_in_quotes(beside.filename().string()) +
+                     ", beside the header, for the data file " + name_in_quotes(name));
+  return beside;
+}
+
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
@@ -45,7 +67,8 @@ std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
   std::vector<std::string> warnings;
   const VolumeMap map(path, header.volume.size, header.placement, warnings);
   const bool is_detached = !header.data_file.empty();
-  const std::filesystem::path data = is_detached ? path.parent_path() / header.data_file : path;
+  const std::filesystem::path data =
+      is_detached ? detached_data(path, header.data_file, warnings) : path;
   if (is_detached) mapping = MappedFile(data, MappedFile::Access::kSequential);
   DenseFile file{.volume = header.volume,
                  .map = map,

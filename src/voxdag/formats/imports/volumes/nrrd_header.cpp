@@ -145,6 +145,10 @@ class NrrdHeaderParser {
     for (const auto& [other, usual] : kOtherNames)
       if (name == other) name = usual;
     const std::string value(trimmed(line.substr(colon + 1)));
+    // Names of files would follow a LIST in place of fields.
+    if (name == "data file" &&
+        (value == "LIST" || value.starts_with("LIST ") || value.find('%') != value.npos))
+      fail(number, "data in several files are not supported");
     const auto [field, is_new] = fields_.try_emplace(name, NrrdField{value, number});
     if (!is_new && field->second.value != value)
       fail(number, "the field " + name_in_quotes(name) + " is there twice, with other values");
@@ -210,9 +214,8 @@ class NrrdHeaderParser {
     const NrrdField& dimension = get("dimension");
     axes_ = number_in<std::uint64_t>(dimension, dimension.value);
     const char* const kAllowed =
-        "the volume must have 3 axes, or 4 if the first one has 3 or 4 channels of uint8, or if "
-        "the "
-        "kind of the first or last one is list";
+        "the volume must have 3 axes, or 4 if the first one has 3 or 4 channels of uint8, if the "
+        "first or last one has one value, or if its kind is list";
     if (axes_ != 3 && axes_ != 4) fail(dimension.line, kAllowed);
     const NrrdField& sizes = get("sizes");
     std::vector<std::uint64_t> numbers;
@@ -230,9 +233,12 @@ class NrrdHeaderParser {
       (is_list_last_ ? volume.repeats : volume.channels) = static_cast<int>(layers);
       volume.is_list = true;
     } else if (axes_ == 4) {
-      if ((numbers[0] != 3 && numbers[0] != 4) || volume.type != ValueType::kUint8)
-        fail(sizes.line, kAllowed);
-      volume.channels = static_cast<int>(numbers[0]);
+      const bool has_colors =
+          (numbers[0] == 3 || numbers[0] == 4) && volume.type == ValueType::kUint8;
+      // One channel, or one volume of a series.
+      is_list_last_ = !has_colors && numbers[0] != 1 && numbers[3] == 1;
+      if (!has_colors && numbers[0] != 1 && !is_list_last_) fail(sizes.line, kAllowed);
+      if (has_colors) volume.channels = static_cast<int>(numbers[0]);
     }
     std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(first_axis()), 3,
                 volume.size.begin());
@@ -258,13 +264,8 @@ class NrrdHeaderParser {
       std::string name = file->value;
       // Teem writes "./name" for a file beside the header.
       if (name.starts_with("./")) name.erase(0, 2);
-      const bool is_list = name == "LIST" || name.starts_with("LIST ");
-      if (is_list || name.find('%') != std::string::npos)
-        fail(file->line, "data in several files are not supported");
-      if (name.empty() || name == "." || name == ".." || name.find('/') != std::string::npos ||
-          name.find('\0') != std::string::npos)
-        fail(file->line, "the data file " + name_in_quotes(name) +
-                             " is not the name of a file in the folder of the header");
+      if (name.empty() || name.find('\0') != std::string::npos)
+        fail(file->line, name_in_quotes(name) + " is not the name of a data file");
       header_.data_file = name;
     }
   }

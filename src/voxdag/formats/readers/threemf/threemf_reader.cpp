@@ -37,6 +37,7 @@ struct Object3mf {
   std::vector<Reference3mf> components;
   bool has_gradients = false;  ///< A triangle has several materials.
   bool is_support = false;     ///< Of a print, not of the body.
+  bool is_other = false;       ///< Neither: slicers store modifiers and the like so.
 };
 
 /// A range of materials.
@@ -62,6 +63,7 @@ struct Archive3mf {
   std::vector<Material> materials{1};  ///< The first one is that of triangles without.
   /// Kinds of elements that are not read: of the shape, and of its colours.
   std::set<std::string> left_out_shapes, left_out_colors;
+  std::set<ResourceId> missing_groups;  ///< Groups that were named before they came.
 };
 
 double millimetres_of(std::string_view unit) {
@@ -71,6 +73,19 @@ double millimetres_of(std::string_view unit) {
   for (const auto& [name, size] : kUnits)
     if (name == unit) return size;
   throw Error("has the unknown unit " + in_quotes(unit));
+}
+
+/// Throws Error if the model needs an extension that changes its shape, and that is not read.
+void check_extensions(const XmlAttributes& model) {
+  for (std::string_view prefixes = model["requiredextensions"]; !prefixes.empty();) {
+    const std::size_t end = std::min(prefixes.find(' '), prefixes.size());
+    const std::string_view extension =
+        model[prefixes.substr(0, end)];  // By its `xmlns:` attribute.
+    prefixes.remove_prefix(std::min(end + 1, prefixes.size()));
+    const auto is = [&](std::string_view name) { return extension.find(name) != extension.npos; };
+    if (end > 0 && !is("/material/") && !is("/production/") && !is("/trianglesets/"))
+      throw Error("needs an extension of 3MF that is not read: " + name_in_quotes(extension));
+  }
 }
 
 AffineTransform item_transform_of(std::string_view text) {
@@ -111,7 +126,7 @@ class ModelHandler : public XmlHandler {
     else if (name == "triangle")
       add_triangle(attributes);
     else if (name == "model")
-      unit_.columns = scaled(millimetres_of(attributes["unit"]));
+      open_model(attributes);
     else if (name == "object")
       open_object(attributes);
     else if (name == "component" && object_ != nullptr)
@@ -131,6 +146,11 @@ class ModelHandler : public XmlHandler {
     return {{{size, 0, 0}, {0, size, 0}, {0, 0, size}, {0, 0, 0}}};
   }
 
+  void open_model(const XmlAttributes& attributes) {
+    check_extensions(attributes);
+    unit_.columns = scaled(millimetres_of(attributes["unit"]));
+  }
+
   void open_object(const XmlAttributes& attributes) {
     const ResourceId id{part_, std::string(attributes["id"])};
     const auto [object, is_new] = archive_.objects.try_emplace(id, memory_);
@@ -138,6 +158,7 @@ class ModelHandler : public XmlHandler {
     archive_.count_entry(part_.size() + id.second.size());
     object_ = &object->second;
     object_->is_support = attributes["type"] == "support" || attributes["type"] == "solidsupport";
+    object_->is_other = attributes["type"] == "other";
     default_group_ = attributes["pid"];
     default_material_ =
         default_group_.empty() ? 0 : material_of(default_group_, attributes["pindex"]);
@@ -189,14 +210,20 @@ class ModelHandler : public XmlHandler {
   /// Returns the material of a property: 0 if its group has no colours that are read.
   std::uint32_t material_of(std::string_view pid, std::string_view index) {
     const auto group = archive_.groups.find({part_, std::string(pid)});
-    if (group == archive_.groups.end()) return 0;
+    if (group == archive_.groups.end()) {
+      archive_.missing_groups.insert({part_, std::string(pid)});
+      return 0;
+    }
     return group->second.first + take_index(index, group->second.count, "property");
   }
 
   void open_property(std::string_view name, const XmlAttributes& attributes) {
     if (name == "basematerials" || name == "colorgroup") {
       archive_.count_entry(part_.size());
-      group_ = &archive_.groups[{part_, std::string(attributes["id"])}];
+      const ResourceId id{part_, std::string(attributes["id"])};
+      if (archive_.missing_groups.contains(id))
+        archive_.left_out_colors.insert("a group of materials after the objects that name it");
+      group_ = &archive_.groups[id];
       *group_ = {static_cast<std::uint32_t>(archive_.materials.size()), 0};
     } else if (group_ != nullptr && (name == "base" || name == "color")) {
       Material material;
@@ -261,6 +288,10 @@ class ThreemfReader {
     for (const Material& material : archive_.materials)
       result.mesh.materials.push_back(material.name);
     warn_of(archive_.left_out_shapes, result);
+    if (others_ > 0)
+      result.warnings.push_back(
+          source_.name + ": " + std::to_string(others_) +
+          " objects of the type \"other\" are left out: 3MF counts them to no body");
     if (parts == ReadParts::kMeshAndAppearance) add_appearance(result);
     return result;
   }
@@ -302,7 +333,8 @@ class ThreemfReader {
       throw source_.error("the build has more than " + std::to_string(kMaxXmlInstances) +
                           " objects");
     const Object3mf& object = found->second;
-    if (object.is_support) return;
+    others_ += object.is_other ? 1 : 0;
+    if (object.is_support || object.is_other) return;
     if (!object.triangles.empty()) {
       instances_.push_back({&object, reference.transform});
       vertices_ += object.vertices.size();
@@ -345,7 +377,7 @@ class ThreemfReader {
   const MeshSource& source_;
   Archive3mf archive_;
   CountedVector<std::pair<const Object3mf*, AffineTransform>> instances_;
-  std::uint64_t references_ = 0, vertices_ = 0, triangles_ = 0;
+  std::uint64_t references_ = 0, vertices_ = 0, triangles_ = 0, others_ = 0;
   bool has_gradients_ = false;
 };
 

@@ -55,8 +55,14 @@ bool read_zip_part(const MeshSource& source, std::string_view name,
   const std::unique_ptr<std::remove_pointer_t<unzFile>, decltype(&unzClose)> zip(
       unzOpen2_64("", &functions), &unzClose);
   if (!zip) throw source.error("is no ZIP archive, or its directory is damaged");
-  const std::string entry(name.substr(name.starts_with('/') ? 1 : 0));
-  if (unzLocateFile(zip.get(), entry.c_str(), kIgnoreCase) != UNZ_OK) return false;
+  std::string entry(name.substr(name.starts_with('/') ? 1 : 0));
+  const auto is_found = [&] {
+    return unzLocateFile(zip.get(), entry.c_str(), kIgnoreCase) == UNZ_OK;
+  };
+  if (!is_found()) {
+    std::replace(entry.begin(), entry.end(), '/', '\\');  // as some programs of Windows write it
+    if (!is_found()) return false;
+  }
   const auto fail = [&] { throw Error(source.name, entry, "cannot be unpacked: it is damaged"); };
   if (unzOpenCurrentFile(zip.get()) != UNZ_OK) fail();
   std::vector<char> part(std::size_t{1} << 18);
