@@ -101,7 +101,9 @@ TEST_F(Hollow, ThicknessIsWrittenAndCounted) {
   // The middles of the plates are as thick as the wall.
   EXPECT_LT(json["thinner"].get<double>(), 0.2 * json["voxels"].get<double>());
   const std::string shape = "'shape': (" + json["thinner"].dump() + ", 3)";
-  EXPECT_NE(read_text(path("thin.npy")).find(shape), std::string::npos);
+  const std::string rows = read_text(path("thin.npy"));
+  EXPECT_NE(rows.find(shape), std::string::npos);
+  EXPECT_EQ(rows.size() - rows.find('\n') - 1, thin * sizeof(Vec3i));
 
   ASSERT_EQ(run_voxdag({"query", path("out.vdag"), "--thickness", "--window", "12,12,0,13,13,8",
                         "-o", path("column.npy"), "-q"})

@@ -104,7 +104,7 @@ void answer_thickness(const ThicknessArguments& arguments, const std::string& ou
     if (!output.empty() && is_in(box, voxel)) thin.push_back(voxel);
   });
   if (!output.empty() && arguments.thinner) {
-    NpyWriter writer(output, "<i4", {3}, sizeof(Vec3i), thin.size());
+    NpyWriter writer(output, "<i4", {3}, sizeof(std::int32_t), thin.size());
     writer.write_rows(thin.data(), thin.size());
     writer.commit();
   }

@@ -20,7 +20,6 @@ struct ToneCurve {
 
 /// The numbers of tone_map_neutral().
 struct NeutralCurve {
-  static constexpr float kFloor = 0.04f;  ///< What a dielectric mirrors at normal incidence.
   static constexpr float kStart = 0.76f;  ///< Brighter colours are compressed.
   static constexpr float kDesaturation = 0.15f;
 };
@@ -44,13 +43,10 @@ VOXDAG_HD inline float tone_map_filmic(float x) {
                             (x * (ToneCurve::kC * x + ToneCurve::kD) + ToneCurve::kE));
 }
 
-/// Source: Khronos Group, "Khronos PBR Neutral Tone Mapper", 2024.
+/// Source: Khronos Group, "Khronos PBR Neutral Tone Mapper", 2024; without its first step. That one
+/// takes away the 4% of the light that dielectrics mirror, which these surfaces do not.
 VOXDAG_HD inline Vec3f tone_map_neutral(Vec3f rgb) {
   using Curve = NeutralCurve;
-  const float least = std::fmin(rgb.x, std::fmin(rgb.y, rgb.z));
-  const float offset =
-      least < 2 * Curve::kFloor ? least - least * least / (4 * Curve::kFloor) : Curve::kFloor;
-  rgb = rgb - Vec3f{offset, offset, offset};
   const float peak = std::fmax(rgb.x, std::fmax(rgb.y, rgb.z));
   if (peak < Curve::kStart) return rgb;
   const float room = 1 - Curve::kStart;

@@ -12,8 +12,6 @@ uniform float u_exposure;     // 0: the sum holds display colours
 layout(location = 0) out vec4 out_color;
 
 vec3 neutral(vec3 rgb) {
-  float least = min(rgb.x, min(rgb.y, rgb.z));
-  rgb -= least < 2.0 * NEUTRAL_FLOOR ? least - least * least / (4.0 * NEUTRAL_FLOOR) : NEUTRAL_FLOOR;
   float peak = max(rgb.x, max(rgb.y, rgb.z));
   if (peak < NEUTRAL_START) return rgb;
   float room = 1.0 - NEUTRAL_START;
