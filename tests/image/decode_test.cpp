@@ -127,6 +127,10 @@ TEST(DecodeImage, TgaPlainAndWithRuns) {
   const auto bytes = joined(plain, {0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255});
   EXPECT_EQ(pixels_of(decode_image(bytes, "a.tga")), kFourColors);
   expect_truncations_are_refused(bytes, bytes.size());
+  const auto mirrored =  // Bit 4: the pixels of a row run from right to left.
+      joined({0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 24, 0x10},
+             {0, 255, 0, 0, 0, 255, 255, 255, 255, 255, 0, 0});
+  EXPECT_EQ(pixels_of(decode_image(mirrored, "a.tga")), kFourColors);
   const std::initializer_list<int> runs = {0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 32, 8};
   const auto packed = joined(runs, {1, 0, 0, 255, 255, 0, 255, 0, 9, 129, 1, 2, 3, 4});
   const DecodedImage image = decode_image(packed, "a.tga");

@@ -24,6 +24,15 @@ TEST(InputTransform, TheUpAxisOfTheFormatIsTurned) {
   EXPECT_TRUE(InputTransform(up("y"), custom_of("-", "obj")).is_identity());
 }
 
+TEST(InputTransform, AssimpTurnsSomeFormatsButNotAll) {
+  for (const std::string name : {"a.dxf", "A.ASE", "a.3ds", "a.md2", "a.ifc", "a.x3d"}) {
+    const InputTransform turn(up("z"), custom_of(name));
+    EXPECT_EQ(turn.point({1, 2, 3}), (Vec3d{1, -3, 2})) << name;
+  }
+  for (const std::string name : {"a.blend", "a.amf", "a.smd"})
+    EXPECT_TRUE(InputTransform(up("z"), custom_of(name)).is_identity()) << name;
+}
+
 TEST(InputTransform, TheInputsAxisCanBeGiven) {
   EXPECT_TRUE(InputTransform(up("z:z"), custom_of("a.obj")).is_identity());
   for (const char* from : {"x", "y", "z"})

@@ -101,7 +101,8 @@ void build_dag_file(BuildArguments arguments, Session& session) {
   MeshWithAppearance& source = meshes.source;
   Mesh& mesh = source.mesh;
   if (arguments.attributes.options.colors && !has_colors(source.appearance))
-    print_warnings({session.subject + ": has no colours: --color stores one grey for all cells"},
+    print_warnings({session.subject + ": has no colours: --color stores one " +
+                    (is_white(source.appearance) ? "white" : "grey") + " for all cells"},
                    session);
   if (arguments.attributes.options.has_channels() && !has_metallic_roughness(source.appearance))
     print_warnings({session.subject + ": has no metallic and no roughness: --channel stores 0 and "

@@ -81,6 +81,13 @@ std::optional<DecodedImage> decode_tga_or_bmp(std::span<const std::uint8_t> byte
                 std::string("cannot read this ") + kind + " image: " + stbi_failure_reason());
   DecodedImage image(width, height, channels, 1, options.memory);
   std::copy_n(pixels.get(), image.bytes(), image.row(0));
+  if (!is_bmp && (bytes[17] & 0x10) != 0) {  // Right to left, which stb_image ignores.
+    const auto pixel = static_cast<std::size_t>(channels);
+    for (int y = 0; y < height; ++y)
+      for (std::size_t a = 0, b = static_cast<std::size_t>(width) - 1; a < b; ++a, --b)
+        std::swap_ranges(image.row(y) + a * pixel, image.row(y) + (a + 1) * pixel,
+                         image.row(y) + b * pixel);
+  }
   return image;
 }
 

@@ -18,6 +18,15 @@ inline bool has_colors(const Appearance& appearance) {
          std::any_of(appearance.materials.begin(), appearance.materials.end(), is_colored);
 }
 
+/// Returns whether all materials are white, as in glTF without colours, if has_colors() is false.
+inline bool is_white(const Appearance& appearance) {
+  return !appearance.materials.empty() &&
+         std::all_of(appearance.materials.begin(), appearance.materials.end(),
+                     [](const Material& material) {
+                       return material.base_color == Vec3f{1, 1, 1};
+                     });
+}
+
 /// Returns whether a material has a metallic or roughness other than the default, or a texture of
 /// them.
 inline bool has_metallic_roughness(const Appearance& appearance) {

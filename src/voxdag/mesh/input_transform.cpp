@@ -64,8 +64,14 @@ FormatCustom custom_of(const std::string& file_name, const std::string& format) 
   };
   if (is_one_of({".gltf", ".glb", ".dae"})) return {1, "m", true};
   if (ending == ".3mf") return {2, "mm", true};
-  if (is_one_of({".obj", ".ply", ".off", ".fbx", ".3ds", ".blend", ".x", ".x3d", ".lwo", ".ac",
-                 ".b3d", ".ms3d", ".vdb", ".splat"}))
+  // assimp turns these, whose z axis is up, so that y is, and makes metres of IFC.
+  if (is_one_of({".ifc", ".ifczip"})) return {1, "m", true};
+  if (is_one_of({".3ds", ".prj", ".ase", ".ask", ".dxf", ".iqm", ".md2", ".md3", ".mdc", ".mdl",
+                 ".md5mesh"}))
+    return {1, "", true};
+  if (is_one_of({".obj",  ".ply", ".off",     ".fbx",  ".x",    ".x3d", ".x3db",
+                 ".lwo",  ".lws", ".lxo",     ".ac",   ".ac3d", ".acc", ".b3d",
+                 ".ms3d", ".irr", ".irrmesh", ".mesh", ".pmx",  ".vdb", ".splat"}))
     return {};
   return {2, "", true};
 }

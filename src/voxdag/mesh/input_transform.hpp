@@ -19,8 +19,10 @@ struct FormatCustom {
   bool has_up = false;  ///< Whether the format has an up axis; if not, y is assumed.
 };
 /// Returns the customs of `format` ("obj"), or, if it is empty, of the format that the ending of
-/// the file's name tells. z is up in .stl, .3mf and files of points and volumes, y in others;
-/// .gltf, .glb and .dae are in metres, .3mf in millimetres.
+/// the file's name tells. z is up in .stl, .3mf, .blend and files of points and volumes, y in
+/// others; .gltf, .glb, .dae and .ifc are in metres, .3mf in millimetres. Those of a mesh that
+/// assimp reads are those of what assimp gives: it turns .3ds, .ase, .dxf and others so that y is
+/// up.
 FormatCustom custom_of(const std::string& file_name, const std::string& format = {});
 
 /// A move of the input: the values of --up, --unit, --scale, --rotate and --translate, as texts

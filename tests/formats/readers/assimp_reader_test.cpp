@@ -135,7 +135,8 @@ TEST_F(AssimpReader, IsTheSameInAChildAndInThisProcess) {
 
 TEST_F(AssimpReader, NamesUnknownFormats) {
   write_text(dir_ / "b.unknown", "no mesh");
-  EXPECT_EQ(reason_of(dir_ / "b.unknown"), "unknown mesh format '.unknown'");
+  EXPECT_EQ(reason_of(dir_ / "b.unknown"),
+            "unknown mesh format '.unknown': 'voxdag import' reads points, voxels and volumes");
 }
 
 TEST_F(AssimpReader, CountsAFactorOfTheFileForAssimp) {

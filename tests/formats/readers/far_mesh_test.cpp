@@ -70,6 +70,23 @@ const Format kFormats[] = {
        }
        return text + "endsolid\n";
      }},
+    {"a.dae",
+     [](const Points& points) {
+       std::string text, corners;
+       for (const Vec3d p : points) text += text_of(p) + " ";
+       for (const auto& f : kFaces) corners += fmt::format("{} {} {} ", f[0], f[1], f[2]);
+       return "<COLLADA><library_geometries><geometry id='g'><mesh><source id='p'><float_array "
+              "id='f'>" +
+              text +
+              "</float_array><technique_common><accessor source='#f' count='4' stride='3'/>"
+              "</technique_common></source><vertices id='v'><input semantic='POSITION' "
+              "source='#p'/></vertices><triangles><input semantic='VERTEX' source='#v' "
+              "offset='0'/><p>" +
+              corners +
+              "</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>"
+              "<visual_scene id='s'><node><instance_geometry url='#g'/></node></visual_scene>"
+              "</library_visual_scenes><scene><instance_visual_scene url='#s'/></scene></COLLADA>";
+     }},
     {"a.off", [](const Points& points) {
        std::string text = fmt::format("OFF {} 4 0\n", points.size());
        for (const Vec3d p : points) text += text_of(p) + "\n";
@@ -164,6 +181,28 @@ TEST_F(FarMesh, TrianglesWithAVertexThatIsNotFiniteAreLeftOutAndCounted) {
       EXPECT_EQ(error_of([&] { read_mesh(path(format.name)); }),
                 path(format.name) + ": every triangle has a vertex that is not finite");
     }
+}
+
+TEST_F(FarMesh, NumbersThatAreNotFiniteMayBeWrittenByWindows) {
+  for (const char* number : {"-1.#IND", "1.#QNAN", "1.#INF", "-1.#INF00", "1.#SNAN0"}) {
+    for (const Format& format : kFormats) {
+      if (format.name == std::string("binary.ply")) continue;
+      Points points = kCorners;
+      points[2].y = 77;
+      std::string text = format.write(points);
+      for (std::size_t at = 0; (at = text.find("77", at)) != text.npos;)
+        text.replace(at, 2, number);
+      const auto read = read_mesh_with_appearance(write(format.name, text));
+      EXPECT_EQ(read.mesh.triangles.size(), 1u) << format.name;
+      EXPECT_EQ(read.warnings,
+                std::vector{path(format.name) + ": 3 triangles left out: a vertex is not finite"});
+    }
+  }
+  for (const char* word : {"1.#", "1.#QN", "2.#INF", "1#INF", "1.#INFx", "x1.#IND"}) {
+    const std::string text = "v 0 0 " + std::string(word) + "\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    EXPECT_EQ(error_of([&] { read_mesh(write("a.obj", text)); }),
+              path("a.obj") + ": line 1: coordinate '" + word + "' is not a number");
+  }
 }
 
 TEST_F(FarMesh, LeftOutTrianglesTakeTheirCornersAlong) {

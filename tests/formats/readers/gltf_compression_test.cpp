@@ -39,6 +39,31 @@ TEST(GltfReader, ViewsOfMeshoptCompression) {
   const Mesh mesh = read_text(read_gltf, asset.text());
   EXPECT_EQ(mesh.vertices, kSquareVertices);
   EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+  // The extension of Khronos has the same format, and views may name a buffer that is missing.
+  Json ratified = Json::parse(asset.text());
+  for (Json& view : ratified["bufferViews"]) {
+    view["extensions"] = {
+        {"KHR_meshopt_compression", view["extensions"]["EXT_meshopt_compression"]}};
+    view["buffer"] = 1;
+  }
+  ratified["extensionsRequired"] = {"KHR_meshopt_compression"};
+  ratified["buffers"].push_back(
+      {{"byteLength", 60},
+       {"uri", "missing.bin"},
+       {"extensions", {{"KHR_meshopt_compression", {{"fallback", true}}}}}});
+  const MeshWithAppearance same = read_all(ratified.dump());
+  EXPECT_EQ(same.mesh.vertices, kSquareVertices);
+  EXPECT_TRUE(same.warnings.empty());
+  Json& color = ratified["bufferViews"][0]["extensions"]["KHR_meshopt_compression"];
+  color["filter"] = "COLOR";
+  EXPECT_EQ(refusal(read_gltf, ratified.dump()),
+            "mesh: bufferViews[0].extensions.KHR_meshopt_compression: the filter 'COLOR' is not "
+            "supported");
+  Asset newer = asset;
+  newer.bytes[color["byteOffset"].get<std::size_t>()] = '\xA1';
+  EXPECT_EQ(refusal(read_gltf, newer.text()),
+            "mesh: bufferViews[0].extensions.EXT_meshopt_compression: version 1 of the compression "
+            "of attributes is not supported");
   Asset cut = asset;
   Json& extension = cut.json["bufferViews"][1]["extensions"]["EXT_meshopt_compression"];
   extension["byteLength"] = 3;

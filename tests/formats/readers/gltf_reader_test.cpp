@@ -115,8 +115,16 @@ TEST(GltfReader, StridedAndQuantisedPositions) {
   EXPECT_EQ(read_text(read_gltf, asset.text()).vertices[1],
             (Vec3f{1, -1, static_cast<float>(100.0 / 32767)}));
   asset.json.erase("extensionsUsed");
+  asset.primitive({{"attributes", {{"POSITION", 0}}}});
+  const MeshWithAppearance undeclared = read_all(asset.text());
+  EXPECT_EQ(undeclared.mesh.vertices[4], (Vec3f{1, -1, static_cast<float>(100.0 / 32767)}));
+  EXPECT_EQ(undeclared.warnings,
+            std::vector{std::string("mesh: accessors[0]: positions are integers, which "
+                                    "KHR_mesh_quantization allows, but the file does not declare "
+                                    "it: they are read")});
+  asset.json["accessors"][0]["componentType"] = 5125;
   EXPECT_EQ(refusal(read_gltf, asset.text()),
-            "mesh: accessors[0]: positions must have component type 5126 (float), not 5122");
+            "mesh: accessors[0]: positions must have component type 5126 (float), not 5125");
 }
 
 TEST(GltfReader, MaterialsAreKeptAndTheDefaultOneIsUnnamed) {
@@ -232,6 +240,39 @@ TEST(GltfReader, HarmlessFaultsAreRead) {
   asset.json["nodes"][0]["matrix"][3] = 1e-3;
   EXPECT_EQ(refusal(read_gltf, asset.text()),
             "mesh: nodes[0]: the last row of the matrix must be 0 0 0 1");
+}
+
+TEST(GltfReader, DataUrisInEverySpelling) {
+  const Asset asset = square();
+  std::string lines = base64(asset.bytes);
+  for (std::size_t at = 60; at < lines.size(); at += 62) lines.insert(at, "\r\n");
+  Json json = asset.json;
+  for (const std::string& uri :
+       {"data:;base64," + base64(asset.bytes), "data:base64," + base64(asset.bytes),
+        "data:application/octet-stream; base64," + base64(asset.bytes),
+        "DATA:application/gltf-buffer;BASE64," + base64(asset.bytes),
+        "data:a/b;c=d;base64, " + lines + "\n"}) {
+    json["buffers"] = {{{"byteLength", asset.bytes.size()}, {"uri", uri}}};
+    const MeshWithAppearance result = read_all(json.dump());
+    EXPECT_EQ(result.mesh.vertices, kSquareVertices) << uri;
+    EXPECT_TRUE(result.warnings.empty());
+  }
+  json["buffers"][0]["uri"] = "data:;base64,AA*A";
+  EXPECT_EQ(refusal(read_gltf, json.dump()), "mesh: buffers[0]: data URI is not base64");
+}
+
+TEST(GltfReader, ABufferThatIsTooShortMattersOnlyToItsViews) {
+  Asset asset = square();
+  Json json = asset.json;
+  const std::string uri = "data:;base64," + base64(asset.bytes);
+  json["buffers"] = {{{"byteLength", asset.bytes.size() + 1}, {"uri", uri}}};
+  const MeshWithAppearance result = read_all(json.dump() + std::string(3, '\0'));
+  EXPECT_EQ(result.mesh.vertices, kSquareVertices);
+  EXPECT_EQ(result.warnings,
+            std::vector{std::string("mesh: buffers[0]: buffer of 60 bytes, but 61 are declared")});
+  json["bufferViews"][1]["byteLength"] = 13;
+  EXPECT_EQ(refusal(read_gltf, json.dump()),
+            "mesh: buffers[0]: buffer of 60 bytes, but 61 are declared");
 }
 
 TEST(GltfReader, TooManyInstancesAreRefusedBeforeTheyAreMade) {

@@ -46,13 +46,68 @@ TEST_F(ReadMtl, MtlStatementsFillTheirMaterial) {
 TEST_F(ReadMtl, MissingMaterialFilesAndMaterialsAreWarnings) {
   const auto missing = read_mesh_with_appearance(
       write("a.obj", "mtllib no.mtl\n" + kSquare + "usemtl x\nf 1 2 3\n"));
-  ASSERT_EQ(missing.warnings.size(), 2u);
-  EXPECT_EQ(missing.warnings[0],
-            path("no.mtl") + ": cannot open: No such file or directory: its materials are grey");
-  EXPECT_EQ(missing.warnings[1],
-            path("a.obj") + ": no MTL file describes material 'x': it is grey");
+  EXPECT_EQ(missing.warnings,
+            std::vector{path("no.mtl") +
+                        ": cannot open: No such file or directory: its materials are grey"});
   expect_near(missing.appearance.materials[0].base_color,
               {srgb_to_linear(0.8f), srgb_to_linear(0.8f), srgb_to_linear(0.8f)});
+}
+
+TEST_F(ReadMtl, MaterialsThatNoFileDescribesAreOneWarning) {
+  write("m.mtl", "newmtl a\nKd 1 0 0\n");
+  std::string text = "mtllib m.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
+  EXPECT_EQ(read_mesh_with_appearance(write("a.obj", text)).warnings,
+            std::vector{path("a.obj") + ": no MTL file describes material 'b': it is grey"});
+  text += "usemtl c\nf 1 2 3\n";
+  EXPECT_EQ(read_mesh_with_appearance(write("a.obj", text)).warnings,
+            std::vector{path("a.obj") +
+                        ": no MTL file describes 2 materials, such as 'b': they are grey"});
+}
+
+TEST_F(ReadMtl, NamesMayHaveQuotesAndComments) {
+  write("m.mtl",
+        "newmtl a # red\nKd 1 0 0\nnewmtl b\nKd 0 1 0\nnewmtl b #blue\nKd 0 0 1\n"
+        "newmtl Material #25\nKd 1 1 0\nnewmtl Material\nKd 0 1 1\n");
+  const auto colour_of = [&](const std::string& name) {
+    const auto result = read(
+        "a.obj", "mtllib m.mtl\n" + kSquare + "usemtl " + name + "\nf 1 2 3\nusemtl b\nf 1 3 4\n");
+    EXPECT_EQ(result.mesh.materials[0], name);
+    EXPECT_EQ(result.appearance.materials[0].name, name);
+    return result.appearance.materials[0].base_color;
+  };
+  for (const char* name : {"a", "\"a\"", "a # scarlet"})
+    EXPECT_EQ(colour_of(name), (Vec3f{1, 0, 0}));
+  for (const char* name : {"b ", "\"b\"", "b # green"})
+    EXPECT_EQ(read("a.obj", "mtllib m.mtl\n" + kSquare + "usemtl " + name + "\nf 1 2 3\n")
+                  .appearance.materials[0]
+                  .base_color,
+              (Vec3f{0, 1, 0}))
+        << name;
+  EXPECT_EQ(colour_of("b #blue"), (Vec3f{0, 0, 1}));
+  EXPECT_EQ(colour_of("Material #25"), (Vec3f{1, 1, 0}));
+  EXPECT_EQ(colour_of("Material"), (Vec3f{0, 1, 1}));
+  const auto unknown = read_mesh_with_appearance(
+      write("a.obj", "mtllib m.mtl\n" + kSquare + "usemtl Material #26\nf 1 2 3\n"));
+  EXPECT_EQ(unknown.warnings.size(), 1u);  // The number is part of the name.
+}
+
+TEST_F(ReadMtl, MapsMayHaveCommentsAndUnknownOptions) {
+  const auto file_of = [&](const std::string& arguments) {
+    write("m.mtl", "newmtl a\nmap_Kd " + arguments + "\n");
+    const auto result = read_mesh_with_appearance(
+        write("a.obj", "mtllib m.mtl\n" + kSquare + "usemtl a\nf 1 2 3\n"));
+    const auto& images = result.appearance.images;
+    return images.empty() ? "" : images[0].path.filename().string();
+  };
+  for (const char* name : {"t.png", "my tex.png", "t #a.png", "-my tex.png"}) write(name, "");
+  EXPECT_EQ(file_of("t.png # a comment"), "t.png");
+  EXPECT_EQ(file_of("-colorspace sRGB t.png"), "t.png");
+  EXPECT_EQ(file_of("-colorspace sRGB -s 1 1 1 my tex.png -colorspace sRGB # all"), "my tex.png");
+  EXPECT_EQ(file_of("t.png -colorspace sRGB"), "t.png");
+  EXPECT_EQ(file_of("my%20tex.png"), "my tex.png");
+  EXPECT_EQ(file_of("t #a.png"), "t #a.png");
+  EXPECT_EQ(file_of("-my tex.png"), "-my tex.png");
+  EXPECT_EQ(file_of("none.png # a"), "none.png # a");
 }
 
 TEST_F(ReadMtl, MalformedMtlStatementsAreWarningsThatNameTheReplacement) {

@@ -220,5 +220,25 @@ TEST_F(NamedFilesTest, MessagesCutLongNamesAndHaveOneLine) {
   EXPECT_NE(control.find("'..??[31m?/x'"), std::string::npos) << control;
 }
 
+TEST_F(NamedFilesTest, TheLongestEndOfAPathThatExistsCounts) {
+  fs::create_directory(directory_.path() / "meshes/other");
+  for (const char* file : {"textures/t.png", "other/t.png", "only.png", "t\xC3\xBCr.png"})
+    write(std::string("meshes/") + file, "");
+  const auto image_of = [&](const std::string& name) {
+    write("meshes/m.mtl", "newmtl m\nmap_Kd " + name + "\n");
+    const auto images = read_mesh_with_appearance(obj("m.mtl")).appearance.images;
+    return images.empty() ? ""
+                          : fs::relative(images[0].path, directory_.path() / "meshes").string();
+  };
+  EXPECT_EQ(image_of("C:\\proj\\textures\\t.png"), "textures/t.png");
+  EXPECT_EQ(image_of("..\\Textures\\T.PNG"), "textures/t.png");
+  EXPECT_EQ(image_of("/home/x/other/t.png"), "other/t.png");
+  EXPECT_EQ(image_of("a/b/c/d/e/f/g/h/i/j/k/other/t.png"), "other/t.png");
+  EXPECT_EQ(image_of("C:\\textures\\only.png"), "only.png");
+  EXPECT_EQ(image_of("t\xFCr.png"), "t\xC3\xBCr.png");
+  EXPECT_EQ(image_of("C:\\proj\\none.png"), "none.png");
+  EXPECT_EQ(image_of("C:\\secret\\..\\..\\secret\\m.mtl"), "m.mtl");  // Not the one outside.
+}
+
 }  // namespace
 }  // namespace voxdag

@@ -1,6 +1,7 @@
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
 
 #include "formats/readers/mesh_text.hpp"
+#include "support/with_threads.hpp"
 #include "voxdag/formats/readers/used_vertices.hpp"
 
 namespace voxdag {
@@ -71,8 +72,25 @@ TEST(ObjReader, ObjectsAndGroupsAreKeptOnRequest) {
   EXPECT_TRUE(read_obj(source, ReadParts::kMesh).mesh.objects.empty());
   source.options.objects = true;
   const Mesh mesh = read_obj(source, ReadParts::kMesh).mesh;
-  EXPECT_EQ(mesh.objects, (std::vector<std::string>{"default", "lid", "box two"}));
-  EXPECT_EQ(mesh.object_runs, (std::vector<ObjectRun>{{0, 0}, {1, 1}, {3, 2}, {4, 1}}));
+  EXPECT_EQ(mesh.objects,
+            (std::vector<std::string>{"default", "box one/lid", "box two", "box two/lid"}));
+  EXPECT_EQ(mesh.object_runs, (std::vector<ObjectRun>{{0, 0}, {1, 1}, {3, 2}, {4, 3}}));
+}
+
+TEST(ObjReader, GroupsOfOneNameInSeveralObjectsAreSeveralObjectsInAnyChunk) {
+  std::string text = std::string(kSquare) + "g alone\nf 1 2 3\n";
+  for (const char* object : {"a", "b", "x"}) {
+    text += "o " + std::string(object) + "\n# " + std::string(kChunkBytes, '#');
+    text += "\ng x\nf 1 2 3\nf 1 3 4\n";
+  }
+  MeshSource source{text, "mesh", {}, nullptr, {}};
+  source.options.objects = true;
+  for (const int threads : {1, 3}) {
+    const Mesh mesh =
+        with_threads(threads, [&] { return read_obj(source, ReadParts::kMesh).mesh; });
+    EXPECT_EQ(mesh.objects, (std::vector<std::string>{"alone", "a/x", "b/x", "x"}));
+    EXPECT_EQ(mesh.object_runs, (std::vector<ObjectRun>{{0, 0}, {1, 1}, {3, 2}, {5, 3}}));
+  }
 }
 
 TEST(ObjReader, ObjectsKeepTheirTrianglesIfOthersAreLeftOut) {

@@ -26,7 +26,7 @@ TEST(OffReader, RefusalsNameTheLine) {
     std::string text = kOffSquare;
     return refusal(read_off, text.replace(text.find(from), from.size(), to));
   };
-  EXPECT_EQ(refusal(read_off, "off\n"),
+  EXPECT_EQ(refusal(read_off, "of\n"),
             "mesh: line 1: not an OFF file: it does not start with 'OFF'");
   EXPECT_EQ(refused("OFF", "4OFF"),
             "mesh: line 1: 4OFF and nOFF are not supported: vertices must have three coordinates");
@@ -45,7 +45,8 @@ TEST(OffReader, RefusalsNameTheLine) {
 
 TEST(OffReader, CountsMayBeInTheFirstWordAndWithoutEdges) {
   const Mesh square = read_text(read_off, kOffSquare);
-  for (const std::string counts : {"OFF4 1 0\n", "OFF4 1\n", "OFF\n4 1\n", "OFF 4 1\n"})
+  for (const std::string counts :
+       {"OFF4 1 0\n", "OFF4 1\n", "OFF\n4 1\n", "OFF 4 1\n", "off\n4 1 0\n"})
     EXPECT_TRUE(read_text(read_off, counts + kOffSquare.substr(kOffSquare.find("0 0 0"))) == square)
         << counts;
   EXPECT_TRUE(is_off("OFF8 12 0\n"));

@@ -48,11 +48,29 @@ TEST_F(ReadMesh, ContentDecidesWhereItIsCertain) {
   for (const std::string name : {"a.ply", "a.obj", "a.xyz", "a"}) {
     EXPECT_EQ(read_mesh(write(name, kPly)).triangles.size(), 1u) << name;
   }
-  for (const std::string name : {"a.stl", "a.STL", "a.xyz", "a"})
-    EXPECT_EQ(read_mesh(write(name, kStl)).triangles.size(), 1u) << name;
-  for (const std::string name : {"a.off", "a"})
+  std::string binary(84 + 50, '\0');
+  binary[80] = 1;
+  binary[84 + 27] = binary[84 + 43] = '\x40';  // 2 0 0 and 0 2 0
+  for (const std::string name : {"a.stl", "a.STL", "a.obj", "a.ply", "a.xyz", "a"})
+    for (const std::string& bytes : {kStl, binary})
+      EXPECT_EQ(read_mesh(write(name, bytes)).triangles.size(), 1u) << name;
+  for (const std::string name : {"a.off", "a.obj", "a"})
     EXPECT_EQ(read_mesh(write(name, kOff)).triangles.size(), 1u) << name;
   EXPECT_EQ(read_mesh(write("a.OBJ", kObj)).triangles.size(), 1u);
+}
+
+TEST_F(ReadMesh, TheCustomsAreThoseOfTheContent) {
+  EXPECT_EQ(mesh_custom(write("a.obj", kObj)).up, 1);
+  EXPECT_EQ(mesh_custom(write("a.obj", kStl)).up, 2);
+  EXPECT_EQ(mesh_custom(write("a.ply", kPly)).up, 1);
+  for (const auto& [root, unit] : {std::pair{"<amf unit=\"inch\">", "in"},
+                                   {"<amf version='1' unit='meter'>", "m"},
+                                   {"<amf>", "mm"},
+                                   {"<amf unit=\"micron\">", ""}}) {
+    const FormatCustom custom = mesh_custom(write("a.amf", root));
+    EXPECT_EQ(custom.unit, unit);
+    EXPECT_EQ(custom.up, 2);
+  }
 }
 
 TEST_F(ReadMesh, GltfFindsItsBufferBesideIt) {

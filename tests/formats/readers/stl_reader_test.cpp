@@ -78,6 +78,9 @@ TEST(StlReader, WordsThatAreMissingDoubledOrSplitAreAWarning) {
   expect_read("solid\nendsolid\n" + kTwoFacets.substr(start.size()), 1);
   expect_read(kTwoFacets.substr(start.size()), 1);
   expect_read(with_all(kTwoFacets, " normal 0 0 1", ""), 1);
+  expect_read(with_all(kTwoFacets, " normal 0 0 1", " normal"), 1);
+  expect_read(kTwoFacets + std::string(3, '\0'), 0);
+  expect_read(kTwoFacets + "\x1A", 0);
 }
 
 TEST(StlReader, AFileMayBeOneLine) {
@@ -106,6 +109,33 @@ TEST(StlReader, ACountThatWasNeverWrittenIsThatOfTheSize) {
     EXPECT_NE(read.warnings[0].find("the size of the file is that of 2"), std::string::npos);
     EXPECT_NE(refusal(read_stl, bytes + "?"), "");
   }
+}
+
+TEST(StlReader, ACountThatIsTooSmallIsThatOfTheSize) {
+  std::string bytes = binary_stl(kFacets, "");
+  bytes[80] = 1;
+  const auto read = read_bytes(bytes);
+  EXPECT_EQ(read.mesh.triangles, kTriangles);
+  EXPECT_EQ(read.warnings,
+            std::vector<std::string>{"mesh: the header says 1 facet, but the size of "
+                                     "the file is that of 2: all are read"});
+  // Zeros are padding, and bytes that are no finite numbers are no facets.
+  for (const char byte : {'\0', '\xFF'}) {
+    const auto padded = read_bytes(binary_stl(kFacets, "") + std::string(100, byte));
+    EXPECT_EQ(padded.mesh.triangles, kTriangles);
+    EXPECT_EQ(padded.warnings,
+              std::vector<std::string>{"mesh: ignored 100 bytes after the last facet, room for 2 "
+                                       "more facets"});
+  }
+}
+
+TEST(StlReader, ASecondFileInTheFileIsAWarning) {
+  const std::string bytes = binary_stl(kFacets, "");
+  const auto read = read_bytes(bytes + bytes);
+  EXPECT_EQ(read.mesh.triangles, kTriangles);
+  EXPECT_EQ(read.warnings,
+            std::vector<std::string>{
+                "mesh: ignored 184 bytes after the last facet: another STL file of 2 facets"});
 }
 
 TEST(StlReader, FacetsMayHaveColours) {
@@ -186,6 +216,11 @@ TEST(StlReader, RefusalsNameThePlaceAndTheReason) {
   EXPECT_EQ(refusal(read_stl, ""), "mesh: the file is empty");
   EXPECT_EQ(refusal(read_stl, "hello"),
             "mesh: not an STL file: it is not ASCII STL, and it is too short for binary STL");
+  EXPECT_EQ(refusal(read_stl, "# made by hand\n" + kTwoFacets),
+            "mesh: not an STL file: text that does not begin with 'solid' or 'facet'");
+  std::string utf16 = "\xFF\xFE";
+  for (const char c : kTwoFacets) utf16 += {c, '\0'};
+  EXPECT_EQ(refusal(read_stl, utf16), "mesh: STL in UTF-16: save it as ASCII or UTF-8");
   const std::string binary = binary_stl(kFacets, "");
   EXPECT_EQ(refusal(read_stl, binary.substr(0, 180)),
             "mesh: byte 180: the file ends after 1 of 2 facets");

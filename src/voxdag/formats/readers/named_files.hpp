@@ -1,11 +1,11 @@
 #pragma once
 /// Files that a mesh file names: MTL files, glTF buffers, textures.
 ///
-/// Many names were written on another system: with `\`, in quotes, in other letter case, or
-/// absolute. A name that exists as it stands counts; else `\` separates folders, quotes are left
-/// out, and letter case does not matter. If that does not exist either, a file with the same base
-/// name may stand for it (ByBaseName): in the folder of the file that names it, or of the mesh
-/// file.
+/// Many names were written on another system: with `\`, in quotes, in other letter case, with
+/// `%20`, in Latin-1, or absolute. A name that exists as it stands counts; else `\` separates
+/// folders, quotes are left out, and letter case does not matter. If that does not exist either, a
+/// file with the same last folders and base name, as many as possible, may stand for it
+/// (ByBaseName): in the folder of the file that names it, or of the mesh file.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -26,7 +26,7 @@ class NamedFiles {
  public:
   explicit NamedFiles(const MeshSource& source);
 
-  /// The names for which the file with the same base name may stand.
+  /// The names for which the file with the same end may stand: base name, and folders before it.
   enum class ByBaseName { kNever, kIfAbsolute, kAlways };
 
   /// Returns the file that `name`, relative to `folder`, stands for, if it exists. Its path, with
@@ -48,8 +48,8 @@ class NamedFiles {
 
  private:
   bool is_allowed(const std::filesystem::path& path) const;
-  std::optional<std::filesystem::path> with_base_name(const std::filesystem::path& folder,
-                                                      std::string_view name) const;
+  std::optional<std::filesystem::path> with_end_of(const std::filesystem::path& folder,
+                                                   std::string_view name) const;
 
   const ReadOptions& options_;
   std::filesystem::path folder_;        ///< The mesh file's.

@@ -85,6 +85,23 @@ MeshWithAppearance read(const std::filesystem::path& path, const ReadOptions& op
   }
 }
 
+/// Returns the customs of an AMF file, whose root element has the unit.
+FormatCustom amf_custom(std::string_view bytes) {
+  FormatCustom custom = custom_of({}, "amf");
+  custom.unit = "mm";  // By the specification, if there is none.
+  const std::string_view head = bytes.substr(0, 4096);
+  constexpr std::string_view kUnit = "unit=";
+  const std::size_t at = head.find(kUnit, std::min(head.find("<amf"), head.size()));
+  if (at == head.npos || at + kUnit.size() + 1 >= head.size()) return custom;
+  const std::string_view name = head.substr(at + kUnit.size() + 1);
+  custom.unit = "";
+  constexpr std::pair<std::string_view, const char*> kUnits[] = {
+      {"millimeter", "mm"}, {"meter", "m"}, {"inch", "in"}, {"feet", "ft"}, {"foot", "ft"}};
+  for (const auto& [word, unit] : kUnits)
+    if (name.starts_with(word)) custom.unit = unit;
+  return custom;
+}
+
 }  // namespace
 
 MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension) {
@@ -95,11 +112,13 @@ MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension
   const std::size_t first = head.find_first_not_of(" \t\r\n");
   if (first != head.npos && head[first] == '{' && head.find("\"asset\"") != head.npos)
     return MeshFormat::kGltf;
+  if (is_exact_binary_stl(bytes) || is_ascii_stl(bytes)) return MeshFormat::kStl;
+  if (is_off(bytes)) return MeshFormat::kOff;
   if (ext == ".obj") return MeshFormat::kObj;
   if (ext == ".ply") return MeshFormat::kPly;
   if (ext == ".gltf" || ext == ".glb") return MeshFormat::kGltf;
-  if (ext == ".stl" || is_exact_binary_stl(bytes) || is_ascii_stl(bytes)) return MeshFormat::kStl;
-  if (ext == ".off" || is_off(bytes)) return MeshFormat::kOff;
+  if (ext == ".stl") return MeshFormat::kStl;
+  if (ext == ".off") return MeshFormat::kOff;
   if (ext == ".3mf") return MeshFormat::k3mf;
   if (ext == ".dae") return MeshFormat::kCollada;
   // Other formats are in XML and ZIP, too, so the extension counts if there is one.
@@ -113,12 +132,19 @@ MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension
 FormatCustom mesh_custom(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string ending = lower_case(
       options.format.empty() ? unpacked_name(path).extension().string() : "." + options.format);
-  if (!ending.empty() && ending != ".dae" && ending != ".fbx")
+  const auto is_one_of = [&](std::initializer_list<std::string_view> endings) {
+    return std::find(endings.begin(), endings.end(), ending) != endings.end();
+  };
+  // The content may be STL. Unpacking a file to see that would take too long.
+  const bool may_be_stl = is_one_of({".obj", ".ply", ".off", ".gltf", ".glb"}) &&
+                          options.format.empty() && unpacked_name(path) == path;
+  if (!ending.empty() && !may_be_stl && !is_one_of({".dae", ".fbx", ".amf"}))
     return custom_of({}, ending.substr(1));
   const InputFile input(path, options.work);
   const MappedFile file(input.path(), MappedFile::Access::kSequential);
   const MeshSource source{file.text(), path.string(), path.parent_path(), &file, options};
   if (ending == ".fbx") return fbx_custom(source.bytes);
+  if (ending == ".amf") return amf_custom(source.bytes);
   switch (detect_mesh_format(source.bytes, ending)) {
     case MeshFormat::kGltf:
       return custom_of({}, "glb");

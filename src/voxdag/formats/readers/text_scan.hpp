@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -33,14 +34,35 @@ inline std::string_view trim(std::string_view text) {
   return text;
 }
 
+/// Returns the end of a number that is not finite as Windows writes it, "1.#QNAN", "-1.#IND" or
+/// "1.#INF00", whose '#' is at `sign`; null if the text is none.
+inline const char* find_windows_nan_end(const char* first, const char* sign, const char* last) {
+  if (sign - first < 2 || sign[-1] != '.' || sign[-2] != '1') return nullptr;
+  const std::string_view rest(sign + 1, static_cast<std::size_t>(last - sign - 1));
+  for (const std::string_view word : {"INF", "IND", "QNAN", "SNAN"})
+    if (rest.starts_with(word)) {
+      const char* end = sign + 1 + word.size();
+      while (end != last && *end >= '0' && *end <= '9') ++end;
+      return end;
+    }
+  return nullptr;
+}
+
 /// Parses the number that the text starts with into the nearest float or double (ties to even) and
 /// returns the number's end, or null if the text does not start with a number. Accepts infinities
-/// and NaN; a number too large for the type becomes infinite.
+/// and NaN, also as Windows writes them (all as NaN); a number too large for the type becomes
+/// infinite.
 template <class Float>
 const char* parse_float_prefix(const char* first, const char* last, Float& value) {
   if (first != last && *first == '+' && last - first > 1 && first[1] != '-') ++first;
   const auto result = fast_float::from_chars(first, last, value);
-  return result.ec == std::errc::invalid_argument ? nullptr : result.ptr;
+  if (result.ec == std::errc::invalid_argument) return nullptr;
+  if (result.ptr != last && *result.ptr == '#')
+    if (const char* const end = find_windows_nan_end(first, result.ptr, last)) {
+      value = std::numeric_limits<Float>::quiet_NaN();
+      return end;
+    }
+  return result.ptr;
 }
 
 /// Parses the whole token like parse_float_prefix(). Returns false if it is not a number.
@@ -83,6 +105,11 @@ inline char line_end_of(std::string_view text) {
 
 inline std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
+/// Returns whether a byte order mark of UTF-16 begins the text.
+inline bool is_utf16(std::string_view text) {
+  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
 }
 
 /// Removes the next line and its end from `text` and returns it without the end.

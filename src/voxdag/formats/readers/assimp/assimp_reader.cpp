@@ -32,6 +32,8 @@ namespace {
 /// Returns assimp's message on one line.
 std::string reason(const Assimp::Importer& importer) {
   std::string text = importer.GetErrorString();
+  if (text.find("Unrecognized file schema") != text.npos)
+    return "of STEP files, only IFC is read: save a CAD model as a mesh, such as STL";
   if (text.empty()) return "cannot read this file, or a file that it names";
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
@@ -108,7 +110,8 @@ struct ImportedMesh {
 ImportedMesh import(const MeshSource& source, const std::string& extension, bool in_confinement) {
   Assimp::Importer importer;
   if (!extension.empty() && !importer.IsExtensionSupported(extension))
-    throw source.error("unknown mesh format '" + extension + "'");
+    throw source.error("unknown mesh format '" + extension +
+                       "': 'voxdag import' reads points, voxels and volumes");
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   constexpr unsigned kSteps =

@@ -216,7 +216,14 @@ const GltfAccessor& GltfAccessors::positions(std::uint64_t index, const GltfValu
   if (value["type"].text() != "VEC3") throw value.error("positions must be VEC3");
   const std::uint64_t type = value["componentType"].whole();
   component_bytes(type, value);
-  if (type == kUint32 || (type != kFloat && !is_quantized()))
+  if (type != kFloat && type != kUint32 && !is_quantized()) {
+    warnings_.add(value
+                      .error("positions are integers, which KHR_mesh_quantization allows, but the "
+                             "file does not declare it: they are read")
+                      .what());
+    is_quantized_ = true;
+  }
+  if (type == kUint32)
     throw value.error("positions must have component type 5126 (float), not " +
                       std::to_string(type));
   return find(index, user);

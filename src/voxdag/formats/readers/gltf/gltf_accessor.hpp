@@ -59,8 +59,8 @@ class GltfAccessor {
 /// The accessors of a file, each checked once.
 class GltfAccessors {
  public:
-  explicit GltfAccessors(const GltfFile& file)
-      : file_(file), accessors_(file.source().work().memory) {}
+  GltfAccessors(const GltfFile& file, Warnings& warnings)
+      : file_(file), warnings_(warnings), accessors_(file.source().work().memory) {}
 
   /// Decodes the accessors of a primitive of KHR_draco_mesh_compression that have no bytes of their
   /// own. Throws Error, OverMemory.
@@ -69,8 +69,8 @@ class GltfAccessors {
   /// The functions below return the accessor that `user` refers to, for one purpose. The references
   /// stay valid. They throw Error and OverMemory.
   ///
-  /// Returns positions: VEC3 of float, or of 8- or 16-bit integers if the asset uses
-  /// KHR_mesh_quantization.
+  /// Returns positions: VEC3 of float, or of 8- or 16-bit integers (KHR_mesh_quantization; a
+  /// warning if the asset does not declare it).
   const GltfAccessor& positions(std::uint64_t index, const GltfValue& user);
   /// Returns indices: SCALAR of unsigned 8, 16 or 32 bits. Does not check their values.
   const GltfAccessor& indices(std::uint64_t index, const GltfValue& user);
@@ -85,6 +85,7 @@ class GltfAccessors {
 
   using Entry = std::pair<const std::uint64_t, GltfAccessor>;
   const GltfFile& file_;
+  Warnings& warnings_;
   std::map<std::uint64_t, GltfAccessor, std::less<>, CountedAllocator<Entry>> accessors_;
   std::optional<bool> is_quantized_;
 };

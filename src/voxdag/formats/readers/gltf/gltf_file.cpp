@@ -20,6 +20,7 @@ constexpr std::string_view kReadExtensions[] = {"EXT_mesh_gpu_instancing",
                                                 "KHR_materials_emissive_strength",
                                                 "KHR_materials_pbrSpecularGlossiness",
                                                 "KHR_mesh_quantization",
+                                                "KHR_meshopt_compression",
                                                 "KHR_node_visibility",
                                                 "KHR_texture_transform"};
 /// The extensions that change neither shape nor colour of the surface at rest.
@@ -69,6 +70,23 @@ std::uint32_t load_u32(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
+/// Returns JSON without NULs at its end: some programs do not pad with blanks.
+std::string_view without_padding(std::string_view json) {
+  while (json.ends_with('\0')) json.remove_suffix(1);
+  return json;
+}
+
+/// Returns what a buffer or buffer view has of meshopt's extensions, which share one format.
+GltfValue meshopt_of(const GltfValue& value) {
+  const GltfValue extensions = value["extensions"], older = extensions["EXT_meshopt_compression"];
+  return older.exists() ? older : extensions["KHR_meshopt_compression"];
+}
+
+Error short_buffer(const GltfValue& buffer, std::size_t bytes) {
+  return buffer.error("buffer of " + std::to_string(bytes) + " bytes, but " +
+                      std::to_string(buffer["byteLength"].whole()) + " are declared");
+}
+
 /// Returns whether chunks of a GLB file follow its header, and the last one ends with the bytes.
 bool is_chunk_list(std::string_view bytes) {
   std::size_t at = 12;
@@ -86,9 +104,9 @@ GltfFile::GltfFile(const MeshSource& source, Warnings& warnings, bool with_appea
     : source_(source), named_files_(source), buffers_(source.work().memory) {
   const std::string_view bytes = source.bytes;
   if (!bytes.starts_with("glTF")) {
-    parse(bytes);
+    parse(without_padding(bytes));
     check_extensions(warnings, with_appearance);
-    open_buffers(std::nullopt);
+    open_buffers(std::nullopt, warnings);
     return;
   }
   if (bytes.size() < 20)
@@ -111,20 +129,19 @@ GltfFile::GltfFile(const MeshSource& source, Warnings& warnings, bool with_appea
   const std::size_t json_bytes = load_u32(bytes, 12);
   if (chunks.size() < 20 || json_bytes > chunks.size() - 20 || chunks.substr(16, 4) != "JSON")
     throw source.error_at_byte(12, "the first chunk must be JSON and end inside the file");
-  std::string_view json = chunks.substr(20, json_bytes);
-  while (json.ends_with('\0')) json.remove_suffix(1);  // Some programs do not pad with blanks.
-  parse(json);
+  parse(without_padding(chunks.substr(20, json_bytes)));
   check_extensions(warnings, with_appearance);
   const std::size_t second = 20 + json_bytes;
   if (chunks.size() - second < 8) {
-    open_buffers(std::nullopt);
+    open_buffers(std::nullopt, warnings);
     return;
   }
   const std::size_t binary_bytes = load_u32(chunks, second);
   if (binary_bytes > chunks.size() - second - 8)
     throw source.error_at_byte(second, "the binary chunk goes beyond the end of the file");
   const bool is_binary = chunks.substr(second + 4, 4) == std::string_view("BIN\0", 4);
-  open_buffers(is_binary ? std::optional(chunks.substr(second + 8, binary_bytes)) : std::nullopt);
+  open_buffers(is_binary ? std::optional(chunks.substr(second + 8, binary_bytes)) : std::nullopt,
+               warnings);
 }
 
 void GltfFile::parse(std::string_view text) {
@@ -165,27 +182,25 @@ void GltfFile::check_extensions(Warnings& warnings, bool with_appearance) const 
   }
 }
 
-void GltfFile::open_buffers(std::optional<std::string_view> binary_chunk) {
+void GltfFile::open_buffers(std::optional<std::string_view> binary_chunk, Warnings& warnings) {
   CancelPoll poll(source_.work());
   for (const GltfValue value : array(GltfArray::kBuffers)) {
     poll.step();
     Buffer& buffer = buffers_.emplace_back();
     std::string unescaped;
     const std::string_view uri = value["uri"].text_view(unescaped);
-    if (!uri.empty()) {
+    if (meshopt_of(value)["fallback"].boolean(false)) {
+      continue;  // Views are compressed elsewhere, and this buffer may be missing.
+    } else if (!uri.empty()) {
       open_uri(value, uri, buffer);
-    } else if (value["extensions"]["EXT_meshopt_compression"]["fallback"].boolean(false)) {
-      continue;  // The bytes are only in compressed views.
     } else {
       if (!binary_chunk || buffers_.size() > 1) throw value.error("the buffer has no URI");
       buffer.bytes = *binary_chunk;
     }
     const std::uint64_t size = value["byteLength"].whole();
-    if (size > buffer.bytes.size())
-      throw value.error("buffer of " + std::to_string(buffer.bytes.size()) + " bytes, but " +
-                        std::to_string(size) + " are declared");
+    if (size > buffer.bytes.size()) warnings.add(short_buffer(value, buffer.bytes.size()).what());
     buffer.bytes = buffer.bytes.substr(0, size);
-    buffer_bytes_ += size;
+    buffer_bytes_ += buffer.bytes.size();
   }
   // A short decoded string has moved with its buffer object, so its view must be set again.
   for (Buffer& buffer : buffers_)
@@ -194,7 +209,7 @@ void GltfFile::open_buffers(std::optional<std::string_view> binary_chunk) {
 }
 
 void GltfFile::open_uri(const GltfValue& value, std::string_view uri, Buffer& buffer) const {
-  if (uri.starts_with("data:")) {
+  if (is_data_uri(uri)) {
     buffer.decoded = decode_data_uri(uri, source_.work());
     if (!buffer.decoded)
       throw value.error(uri.find(',') == uri.npos ? "malformed data URI"
@@ -236,7 +251,7 @@ GltfValue GltfFile::item(GltfArray array, std::uint64_t index, const GltfValue& 
 std::string_view GltfFile::view_bytes(const GltfValue& user, std::optional<GltfValue>& view) const {
   const std::uint64_t index = user["bufferView"].whole();
   view = item(GltfArray::kBufferViews, index, user);
-  const GltfValue packed = (*view)["extensions"]["EXT_meshopt_compression"];
+  const GltfValue packed = meshopt_of(*view);
   if (!packed.exists()) return buffer_part(*view);
   auto decoded = decoded_views_.find(index);
   if (decoded == decoded_views_.end())
@@ -250,12 +265,14 @@ std::string_view GltfFile::view_bytes(const GltfValue& user, std::optional<GltfV
 /// Returns the bytes between `byteOffset` and `byteLength` of a buffer.
 std::string_view GltfFile::buffer_part(const GltfValue& part) const {
   const std::uint64_t index = part["buffer"].whole();
-  item(GltfArray::kBuffers, index, part);
+  const GltfValue value = item(GltfArray::kBuffers, index, part);
   const std::string_view buffer = buffers_[index].bytes;
   const std::uint64_t offset = part["byteOffset"].whole(0);
   const std::uint64_t length = part["byteLength"].whole();
-  if (offset > buffer.size() || length > buffer.size() - offset)
+  if (offset > buffer.size() || length > buffer.size() - offset) {
+    if (buffer.size() < value["byteLength"].whole()) throw short_buffer(value, buffer.size());
     throw part.error("buffer view goes beyond its buffer");
+  }
   return buffer.substr(offset, length);
 }
 

@@ -51,8 +51,8 @@ class GltfFile {
   std::string file_name(const GltfValue& value, std::string_view uri) const;
 
   /// Returns the bytes of the buffer view that `user` refers to, which lie inside their buffer, or
-  /// are decoded once (EXT_meshopt_compression). Sets `view` to the buffer view, which has the
-  /// stride. Throws Error and OverMemory.
+  /// are decoded once (EXT_ and KHR_meshopt_compression). Sets `view` to the buffer view, which has
+  /// the stride. Throws Error and OverMemory.
   std::string_view view_bytes(const GltfValue& user, std::optional<GltfValue>& view) const;
 
   /// Returns the total size of all buffers, in bytes.
@@ -70,7 +70,7 @@ class GltfFile {
   void parse(std::string_view text);
   void check_version() const;
   void check_extensions(Warnings& warnings, bool with_appearance) const;
-  void open_buffers(std::optional<std::string_view> binary_chunk);
+  void open_buffers(std::optional<std::string_view> binary_chunk, Warnings& warnings);
   std::string_view buffer_part(const GltfValue& part) const;
   void open_uri(const GltfValue& value, std::string_view uri, Buffer& buffer) const;
 

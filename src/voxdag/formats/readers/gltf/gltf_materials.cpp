@@ -64,7 +64,7 @@ TextureWrap wrap_of(const GltfValue& mode) {
 std::string file_name_of(const GltfFile& file, const GltfValue& image) {
   std::string unescaped;
   const std::string_view uri = image["uri"].text_view(unescaped);
-  if (uri.empty() || uri.starts_with("data:")) return "";
+  if (uri.empty() || is_data_uri(uri)) return "";
   return file.file_name(image, uri);
 }
 
@@ -136,7 +136,7 @@ class MaterialReader {
   void copy_image(const GltfValue& image, TextureImage& out) {
     std::string unescaped;
     const std::string_view uri = image["uri"].text_view(unescaped);
-    if (uri.starts_with("data:")) {
+    if (is_data_uri(uri)) {
       const auto decoded = decode_data_uri(uri, file_.source().work());
       if (!decoded) throw image.error("malformed data URI");
       set_bytes(decoded->bytes, out);

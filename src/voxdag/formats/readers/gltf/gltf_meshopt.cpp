@@ -2,6 +2,8 @@
 
 #include <meshoptimizer.h>
 
+#include "voxdag/core/printable.hpp"
+
 namespace voxdag {
 
 CountedVector<char> decode_meshopt(const GltfValue& packed, std::string_view bytes,
@@ -25,6 +27,9 @@ CountedVector<char> decode_meshopt(const GltfValue& packed, std::string_view byt
       : mode == "INDICES"
           ? meshopt_decodeIndexSequence(out.data(), count, stride, from, bytes.size())
           : -1;
+  if (failed != 0 && is_attributes && !bytes.empty() && from[0] > 0xA0)
+    throw packed.error("version " + std::to_string(from[0] & 15) +
+                       " of the compression of attributes is not supported");
   if (failed != 0) throw packed.error("the compressed bytes are malformed");
   if (!is_attributes || filter == "NONE") return out;
   if (filter == "OCTAHEDRAL")
@@ -34,7 +39,7 @@ CountedVector<char> decode_meshopt(const GltfValue& packed, std::string_view byt
   else if (filter == "EXPONENTIAL")
     meshopt_decodeFilterExp(out.data(), count, stride);
   else
-    throw packed.error("the filter is unknown");
+    throw packed.error("the filter " + name_in_quotes(filter) + " is not supported");
   return out;
 }
 

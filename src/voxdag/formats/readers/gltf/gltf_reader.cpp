@@ -21,7 +21,7 @@ class GltfReader {
       : source_(source),
         has_appearance_(parts == ReadParts::kMeshAndAppearance),
         file_(source, warnings_, has_appearance_),
-        accessors_(file_),
+        accessors_(file_, warnings_),
         scene_(find_gltf_scene(file_, accessors_, warnings_)),
         pose_(file_, accessors_, scene_),
         meshes_(source.work().memory),

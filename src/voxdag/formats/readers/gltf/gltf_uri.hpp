@@ -18,7 +18,12 @@ struct DecodedUri {
   std::string bytes;
 };
 
-/// Decodes a `data:` URI. Returns nothing if it is malformed. Throws OverMemory and Cancelled.
+/// Returns whether a URI begins with `data:`, in any letter case.
+bool is_data_uri(std::string_view uri);
+
+/// Decodes a `data:` URI. It is base64 if its last parameter is `base64`, in any letter case, with
+/// blanks around it or without a semicolon before it; blanks and line ends in base64 do not count.
+/// Returns nothing if it is malformed. Throws OverMemory and Cancelled.
 std::optional<DecodedUri> decode_data_uri(std::string_view uri, Work work);
 
 }  // namespace voxdag

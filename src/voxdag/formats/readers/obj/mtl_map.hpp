@@ -22,9 +22,19 @@ struct MtlMap {
   bool clamp = false;
 };
 
+/// Whether a text is read as it stands, or without what some programs add to it.
+enum class MtlText { kExact, kPlain };
+
 /// Parses the arguments of a map statement: options, the name of a file, and options again, which
-/// some programs write after the name. Throws MalformedMtl.
-MtlMap parse_mtl_map(std::string_view text);
+/// some programs write after the name. Plain text has no comment, and no options that are not
+/// known: words such as "-colorspace", and one value. Throws MalformedMtl.
+MtlMap parse_mtl_map(std::string_view text, MtlText kind = MtlText::kExact);
+
+/// Returns the text before a comment: a blank and '#', but not "#1", which ends names of materials.
+std::string_view without_mtl_comment(std::string_view text);
+
+/// Returns the name of a material without a comment and without quotes.
+std::string_view plain_mtl_name(std::string_view name);
 
 /// Removes the numbers at the start of the text, at most `numbers.size()`, and stores them in
 /// `numbers`. Returns the number of values removed, also counting values that are not finite.

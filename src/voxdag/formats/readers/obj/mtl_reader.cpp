@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,10 +24,17 @@ class MtlReader::Impl {
         appearance_(appearance),
         warnings_(warnings),
         names_(source.work().memory),
+        plain_names_(source.work().memory),
         images_(source.work().memory),
         image_memory_(source.work().memory, 0),
-        is_described_(appearance.materials.size(), false) {
-    for (const Material& material : appearance.materials) names_.find_or_add(material.name);
+        described_(appearance.materials.size(), Described::kNot) {
+    for (const Material& material : appearance.materials) {
+      const std::uint32_t id = names_.find_or_add(material.name);
+      const std::string_view plain = plain_mtl_name(material.name);
+      if (plain.size() < material.name.size() &&
+          plain_names_.find_or_add(plain) == with_plain_name_.size())
+        with_plain_name_.push_back(id);
+    }
   }
 
   void read(std::string_view text, const std::filesystem::path& folder, const std::string& name) {
@@ -53,17 +61,43 @@ class MtlReader::Impl {
     finish();
   }
 
-  bool describes(std::size_t material) const { return is_described_[material]; }
+  bool describes(std::size_t material) {
+    if (described_[material] != Described::kNot) return true;
+    Material& own = appearance_.materials[material];
+    const auto other = find_plain(own.name);
+    if (!other || described_[*other] == Described::kNot) return false;
+    std::string name = std::move(own.name);
+    own = appearance_.materials[*other];
+    own.name = std::move(name);
+    return true;
+  }
 
  private:
+  /// How a material is described: by a name that has to lose a comment or quotes, by one with which
+  /// the material's own does without them, or by the same name. A stronger one replaces a weaker.
+  enum class Described : std::uint8_t { kNot, kByPart, kByPlainName, kByName };
+
+  /// Returns the material whose name is the given one without quotes and comment, or the first one
+  /// whose name without them is.
+  std::optional<std::uint32_t> find_plain(std::string_view name) const {
+    const std::string_view plain = plain_mtl_name(name);
+    if (const auto found = names_.find(plain)) return found;
+    const auto found = plain_names_.find(plain);
+    return found ? std::optional(with_plain_name_[*found]) : std::nullopt;
+  }
+
   void start(std::string_view name) {
     finish();
-    const auto found = names_.find(name);
-    material_ = found ? &appearance_.materials[*found] : nullptr;
-    if (!found) return;
+    auto found = names_.find(name);
+    const Described described = found                          ? Described::kByName
+                                : plain_mtl_name(name) == name ? Described::kByPlainName
+                                                               : Described::kByPart;
+    if (!found) found = find_plain(name);
+    if (!found || described < described_[*found]) return;
+    material_ = &appearance_.materials[*found];
     *material_ = {};
-    material_->name = name;
-    is_described_[*found] = true;
+    material_->name = names_[*found];
+    described_[*found] = described;
     has_dissolve_ = false;
     hiding_.clear();
   }
@@ -118,7 +152,7 @@ class MtlReader::Impl {
     } else if (keyword == "map_ke") {
       material.emission_map = {};
       attempt("the material's emission has no texture",
-              [&] { material.emission_map = use(parse_mtl_map(line)); });
+              [&] { material.emission_map = use(map_of(line)); });
     } else if (keyword == "d" || (keyword == "tr" && !has_dissolve_)) {
       has_dissolve_ = keyword == "d";
       material.alpha = 1;
@@ -128,11 +162,11 @@ class MtlReader::Impl {
     } else if (keyword == "map_kd") {
       material.color_map = {};
       attempt("the material's colour replaces the texture",
-              [&] { material.color_map = use(parse_mtl_map(line)); });
+              [&] { material.color_map = use(map_of(line)); });
     } else if (keyword == "map_d") {
       material.alpha_map = {};
       attempt("the material is opaque without its alpha map",
-              [&] { material.alpha_map = use(parse_mtl_map(line)); });
+              [&] { material.alpha_map = use(map_of(line)); });
     } else if (keyword == "norm" || keyword == "map_kn") {
       set_normal_map(line, NormalMapKind::kTangentSpace);
     } else if (keyword == "bump" || keyword == "map_bump") {
@@ -149,12 +183,11 @@ class MtlReader::Impl {
     } else if (keyword == "map_pm" || keyword == "map_pr") {
       TextureUse& map = keyword == "map_pm" ? material.metallic_map : material.roughness_map;
       map = {};
-      attempt("the material's number replaces the texture",
-              [&] { map = use(parse_mtl_map(line)); });
+      attempt("the material's number replaces the texture", [&] { map = use(map_of(line)); });
     } else if (keyword == "disp" || keyword == "map_disp") {
       material.displacement_map = {};
       attempt("the surface is not displaced", [&] {
-        const MtlMap map = parse_mtl_map(line);
+        const MtlMap map = map_of(line);
         material.displacement_map = use(map);
         material.displacement_base = map.base_gain[0];
         material.displacement_gain = map.base_gain[1];
@@ -195,11 +228,25 @@ class MtlReader::Impl {
   void set_normal_map(std::string_view line, NormalMapKind kind) {
     material_->normal_map = {};
     attempt("the mesh's own normals replace the normal map", [&] {
-      const MtlMap map = parse_mtl_map(line);
+      const MtlMap map = map_of(line);
       material_->normal_map = use(map);
       material_->normal_kind = kind;
       material_->normal_scale = map.bump;
     });
+  }
+
+  /// Parses a map statement; as plain text if only that names a file that exists.
+  MtlMap map_of(std::string_view line) const {
+    using enum NamedFiles::ByBaseName;
+    MtlMap map = parse_mtl_map(line);
+    try {
+      const MtlMap plain = parse_mtl_map(line, MtlText::kPlain);
+      if (plain.file != map.file && !files_.existing(folder_, map.file, kNever) &&
+          files_.existing(folder_, plain.file, kAlways))
+        return plain;
+    } catch (const MalformedMtl&) {  // An option of the plain text is part of the name.
+    }
+    return map;
   }
 
   TextureUse use(const MtlMap& map) {
@@ -240,10 +287,12 @@ class MtlReader::Impl {
   const NamedFiles& files_;
   Appearance& appearance_;
   Warnings& warnings_;
-  NameTable names_;   ///< Names of the materials.
-  NameTable images_;  ///< Paths of the images.
+  NameTable names_;                             ///< Names of the materials.
+  NameTable plain_names_;                       ///< Those that differ, without quotes and comments.
+  std::vector<std::uint32_t> with_plain_name_;  ///< The first material of each.
+  NameTable images_;                            ///< Paths of the images.
   MemoryReservation image_memory_;
-  std::vector<bool> is_described_;
+  std::vector<Described> described_;
   std::filesystem::path folder_;  ///< Folder of the current file.
   std::string file_;              ///< Its name in messages.
   std::size_t line_number_ = 1;
@@ -264,6 +313,6 @@ void MtlReader::read(std::string_view text, const std::filesystem::path& folder,
   impl_->read(text, folder, name);
 }
 
-bool MtlReader::describes(std::size_t material) const { return impl_->describes(material); }
+bool MtlReader::describes(std::size_t material) { return impl_->describes(material); }
 
 }  // namespace voxdag

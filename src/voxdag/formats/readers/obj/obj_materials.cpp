@@ -17,10 +17,11 @@ constexpr std::size_t kLargestMtlBytes = std::size_t{64} << 20;
 
 /// Calls body(name, path) for each file that the argument of `mtllib` names: one file with blanks
 /// in its name, or several files; a blank in a folder's name ends nothing. Adds a warning for each
-/// name outside the OBJ file's folder.
+/// name outside the OBJ file's folder, and returns whether there is none.
 template <class Body>
-void for_each_library(const MeshSource& source, const NamedFiles& files, const NameTable& libraries,
+bool for_each_library(const MeshSource& source, const NamedFiles& files, const NameTable& libraries,
                       Warnings& warnings, const Body& body) {
+  bool all_found = true;
   const auto find = [&](std::string_view name) {
     try {
       body(name, files.find(source.folder, name, {source.name, "mtllib"}));
@@ -30,6 +31,7 @@ void for_each_library(const MeshSource& source, const NamedFiles& files, const N
       throw;
     } catch (const Error& error) {
       warnings.add(std::string(error.what()) + ": its materials are grey");
+      all_found = false;
     }
   };
   for (std::size_t i = 0; i < libraries.size(); ++i) {
@@ -46,6 +48,7 @@ void for_each_library(const MeshSource& source, const NamedFiles& files, const N
       }
     if (!is_list) find(whole);
   }
+  return all_found;
 }
 
 /// Opens an MTL file. On failure adds a warning and returns nothing.
@@ -82,20 +85,30 @@ std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh
   const NamedFiles files(source);
   MtlReader reader(source, files, appearance, warnings);
   NameTable seen(source.work().memory);
+  bool all_open = true;
   const auto read = [&](std::string_view name, const std::filesystem::path& path) {
     const std::string key = path.lexically_normal().string();
     if (seen.find(key)) return;
     seen.find_or_add(key);
     const std::string printed = printable_path(source.folder, name);
-    if (const auto file = open_library(path, printed, warnings))
+    const auto file = open_library(path, printed, warnings);
+    if (file)
       reader.read(file->text(), path.parent_path(), printed);
+    else
+      all_open = false;
   };
-  for_each_library(source, files, libraries, warnings, read);
+  const bool all_found = for_each_library(source, files, libraries, warnings, read);
   if (auto warning = files.warning(source.name)) warnings.add(std::move(*warning));
+  std::size_t missing = 0, first = 0;
   for (std::size_t i = 0; i < materials.size() && !libraries.empty(); ++i)
-    if (!materials[i].name.empty() && !reader.describes(i))
-      warnings.add(source.name + ": no MTL file describes material " +
-                   name_in_quotes(materials[i].name) + ": it is grey");
+    if (!reader.describes(i) && !materials[i].name.empty() && missing++ == 0) first = i;
+  // A library that is missing has had its warning.
+  if (missing > 0 && all_found && all_open)
+    warnings.add(source.name + ": no MTL file describes " +
+                 (missing == 1 ? "material " + name_in_quotes(materials[first].name) + ": it is"
+                               : std::to_string(missing) + " materials, such as " +
+                                     name_in_quotes(materials[first].name) + ": they are") +
+                 " grey");
   return warnings.take(source.name);
 }
 

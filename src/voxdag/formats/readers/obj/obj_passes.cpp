@@ -94,9 +94,11 @@ ObjChunk ObjFile::count(std::string_view chunk, ReadParts parts) const {
             counted.libraries.find_or_add(trim(line));
             break;
           case ObjStatement::kObject:
+          case ObjStatement::kGroup:
             if (source_.options.objects)
-              counted.object_runs.push_back(
-                  {counted.counts.triangles, counted.objects.find_or_add(trim(line))});
+              counted.parts.push_back({counted.counts.triangles,
+                                       counted.objects.find_or_add(trim(line)),
+                                       statement == ObjStatement::kGroup});
             break;
           default:
             break;

@@ -16,7 +16,17 @@ namespace voxdag {
 class ObjAttributes;
 struct ObjReferences;
 
-enum class ObjStatement { kVertex, kUv, kNormal, kFace, kMaterial, kLibrary, kObject, kOther };
+enum class ObjStatement {
+  kVertex,
+  kUv,
+  kNormal,
+  kFace,
+  kMaterial,
+  kLibrary,
+  kObject,
+  kGroup,
+  kOther
+};
 
 /// Removes the keyword from a line, which must not start with a blank, and returns the statement
 /// that it stands for.
@@ -35,7 +45,8 @@ inline ObjStatement take_keyword(std::string_view& line) {
   const std::string_view keyword = next_token(line);
   if (keyword == "usemtl") return ObjStatement::kMaterial;
   if (keyword == "mtllib") return ObjStatement::kLibrary;
-  if (keyword == "o" || keyword == "g") return ObjStatement::kObject;
+  if (keyword == "o") return ObjStatement::kObject;
+  if (keyword == "g") return ObjStatement::kGroup;
   return ObjStatement::kOther;
 }
 
@@ -71,16 +82,23 @@ struct ObjRun {
   ObjCounts before;  ///< The values that precede the run in its chunk.
 };
 
+/// A statement `o` or `g` of a chunk.
+struct ObjPart {
+  std::uint64_t first_triangle = 0;
+  std::uint32_t name = 0;  ///< Index into ObjChunk::objects.
+  bool is_group = false;
+};
+
 /// The contents of a chunk.
 struct ObjChunk {
   explicit ObjChunk(MemoryBudget* memory)
-      : materials(memory), libraries(memory), objects(memory), object_runs(memory), runs(memory) {}
+      : materials(memory), libraries(memory), objects(memory), parts(memory), runs(memory) {}
 
   ObjCounts counts;
-  NameTable materials, libraries;        ///< Arguments of `usemtl` and `mtllib`.
-  NameTable objects;                     ///< Arguments of `o` and `g`, if they are read.
-  CountedVector<ObjectRun> object_runs;  ///< Where each begins; indices into `objects`.
-  std::uint32_t last_material = 0;       ///< Index into `materials` of the last `usemtl`.
+  NameTable materials, libraries;   ///< Arguments of `usemtl` and `mtllib`.
+  NameTable objects;                ///< Arguments of `o` and `g`, if they are read.
+  CountedVector<ObjPart> parts;     ///< Where each begins.
+  std::uint32_t last_material = 0;  ///< Index into `materials` of the last `usemtl`.
   bool has_faces = false, has_faces_before_material = false;
   bool has_colors = false;     ///< Some vertex has six numbers.
   CountedVector<ObjRun> runs;  ///< In order. None if there would be more than kMaxRuns.

@@ -74,9 +74,9 @@ class ObjReader {
       if (is_whole)
         for (const bool has_values : {true, false})
           chunks_.back().runs.push_back({texts_[c], has_values, {}});
-      for (const ObjectRun& run : chunk.object_runs)
-        object_runs_.push_back({totals_.triangles + run.first_triangle,
-                                object_names_.find_or_add(chunk.objects[run.object])});
+      for (const ObjPart& part : chunk.parts)
+        object_runs_.push_back({totals_.triangles + part.first_triangle,
+                                object_of(chunk.objects[part.name], part.is_group)});
       totals_ += chunk.counts;
       for (std::size_t i = 0; i < chunk.materials.size(); ++i)
         material_ids_.find_or_add(chunk.materials[i]);
@@ -91,6 +91,14 @@ class ObjReader {
     if (totals_.vertices >= kNoMaterial)
       throw source_.error("the mesh has more than 4,294,967,294 vertices");
     make_room(has_colors);
+  }
+
+  /// Returns the object that a statement `o` or `g` begins or goes on with: that of the name, or of
+  /// both names, the first one cut, if the group is in an object of another name.
+  std::uint32_t object_of(std::string_view name, bool is_group) {
+    if (!is_group) object_ = name;
+    if (!is_group || object_.empty() || object_ == name) return object_names_.find_or_add(name);
+    return object_names_.find_or_add(object_.substr(0, kLongestName) + "/" + std::string(name));
   }
 
   void make_room(bool has_colors) {
@@ -203,6 +211,7 @@ class ObjReader {
   ObjCounts totals_;
   MemoryReservation memory_;  ///< The arrays of the mesh.
   NameTable material_ids_, object_names_;
+  std::string object_;                    ///< The name of the last `o`.
   CountedVector<ObjectRun> object_runs_;  ///< In the order of the file, with empty ones.
   NameTable libraries_;
   std::optional<ObjAttributes> attributes_;  ///< Set if the appearance is read.
@@ -259,8 +268,7 @@ class ObjMeshChunks final : public MeshChunks {
 
 MeshWithAppearance read_obj(const MeshSource& source, ReadParts parts) {
   if (source.bytes.empty()) throw source.error("the file is empty");
-  if (source.bytes.starts_with("\xFF\xFE") || source.bytes.starts_with("\xFE\xFF"))
-    throw source.error("OBJ in UTF-16: save it as ASCII or UTF-8");
+  if (is_utf16(source.bytes)) throw source.error("OBJ in UTF-16: save it as ASCII or UTF-8");
   return ObjReader(source, parts).read();
 }
 

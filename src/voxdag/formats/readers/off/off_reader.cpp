@@ -90,8 +90,10 @@ class OffReader {
     row_ = next_line_of_row();
     has_magic_ = !are_counts(row_);
     if (!has_magic_) return;
-    const std::string_view magic = row_.substr(0, row_.find("OFF"));
-    if (!is_off(row_)) throw Fault{row_.data(), "not an OFF file: it does not start with 'OFF'"};
+    const bool is_lower = row_ == "off";
+    const std::string_view magic = row_.substr(0, row_.find(is_lower ? "off" : "OFF"));
+    if (!is_lower && !is_off(row_))
+      throw Fault{row_.data(), "not an OFF file: it does not start with 'OFF'"};
     row_.remove_prefix(magic.size() + 3);
     if (magic.find('4') != magic.npos || magic.find('n') != magic.npos)
       throw Fault{magic.data(),

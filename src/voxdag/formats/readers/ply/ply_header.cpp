@@ -111,7 +111,9 @@ class PlyHeaderParser {
       header_.format = PlyFormat::kBigEndian;
     else
       fail("unknown PLY format " + in_quotes(name));
-    if (!version.empty() && version != "1.0") fail("unknown PLY version " + in_quotes(version));
+    if (!version.empty() && version != "1.0") header_.version = version;
+    if (!header_.version.empty() && !version.starts_with("1."))
+      fail("unknown PLY version " + in_quotes(version));
   }
 
   void parse_element(std::string_view text) {

@@ -50,7 +50,8 @@ enum class PlyFormat : std::uint8_t { kAscii, kLittleEndian, kBigEndian };
 
 struct PlyHeader {
   PlyFormat format = PlyFormat::kAscii;
-  char line_end = '\n';  ///< Ends the lines of the header, and of a body of text.
+  std::string_view version;  ///< If it is 1.x, but not 1.0.
+  char line_end = '\n';      ///< Ends the lines of the header, and of a body of text.
   std::vector<PlyElement> elements;
   CountedVector<std::string_view> materials;  ///< Comments `material NUMBER NAME`, by number.
   CountedVector<std::string_view> textures;   ///< Comments `TextureFile NAME`.

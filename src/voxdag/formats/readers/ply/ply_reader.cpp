@@ -3,6 +3,7 @@
 #include "voxdag/formats/readers/named_files.hpp"
 #include "voxdag/formats/readers/plain_colors.hpp"
 #include "voxdag/formats/readers/ply/ply_rows.hpp"
+#include "voxdag/formats/readers/text_scan.hpp"
 
 namespace voxdag {
 
@@ -24,6 +25,9 @@ MeshWithAppearance read_ply(const MeshSource& source, ReadParts parts) {
                                                      : read_ply_binary(body, memory);
   };
   read(false);
+  if (!header.version.empty())
+    result.warnings.push_back(source.name + ": PLY version " + in_quotes(header.version) +
+                              ": read as 1.0");
   if (!attributes) return result;
   if (attributes->go_to_255()) {
     read(true);

@@ -127,7 +127,8 @@ inline std::vector<std::string_view> split_facets(std::string_view text, std::si
 
 /// Calls body(Vec3f) for each corner of a part from split_facets(). Returns how many words "solid"
 /// and "endsolid" are missing or doubled, how many words such as "end loop" are split, and how many
-/// facets have no normal. Throws Fault for text that breaks the grammar otherwise.
+/// facets have no normal or no numbers of it. Throws Fault for text that breaks the grammar
+/// otherwise.
 template <class Body>
 std::size_t parse_stl_text(const MeshSource& source, std::string_view part, bool is_first,
                            bool is_last, const Body& body) {
@@ -160,10 +161,11 @@ std::size_t parse_stl_text(const MeshSource& source, std::string_view part, bool
     if (same_word(token, "facet")) {
       irregular += in_solid ? 0 : 1;
       in_solid = true;
-      if (tokens.take("outer")) {
+      const bool has_normal = !tokens.take("outer");
+      if (has_normal) expect("normal");
+      if (!has_normal || tokens.take("outer")) {
         ++irregular;
       } else {
-        expect("normal");
         for (int i = 0; i < 3; ++i) {  // The normal is unused: some writers put NaN there.
           if (tokens.next().empty()) throw Fault{token.data(), "the file ends inside a facet"};
         }

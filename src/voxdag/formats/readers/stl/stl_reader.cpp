@@ -144,6 +144,17 @@ class Welder {
 
 constexpr std::size_t kFacetsPerPart = 2048;  ///< About the number in a part of an ascii file.
 
+/// Returns whether bytes may be whole facets: not only zeros, which pad files, and all corners
+/// finite.
+bool are_facets(std::string_view bytes) {
+  if (bytes.find_first_not_of('\0') == bytes.npos) return false;
+  for (std::size_t at = 0; at < bytes.size(); at += kStlFacetBytes)
+    for (std::size_t word = 12; word < 48; word += 4)
+      if (!std::isfinite(std::bit_cast<float>(load_stl_word(bytes.data() + at + word))))
+        return false;
+  return true;
+}
+
 /// Returns the facets of a binary file. Adds a warning if the size of the file does not match.
 std::string_view find_facets(const MeshSource& source, std::vector<std::string>& warnings) {
   if (source.bytes.size() < kStlHeaderBytes)
@@ -151,21 +162,34 @@ std::string_view find_facets(const MeshSource& source, std::vector<std::string>&
   std::size_t count = stl_facet_count(source.bytes);
   const std::string_view facets = source.bytes.substr(kStlHeaderBytes);
   const std::size_t room = facets.size() / kStlFacetBytes;
+  const bool is_whole = room > 0 && room * kStlFacetBytes == facets.size();
   const bool is_unset = count == 0 || count == 0xFFFFFFFF;  // Written before the facets were known.
-  if (is_unset && room > 0 && room * kStlFacetBytes == facets.size()) {
+  if (is_whole &&
+      (is_unset || (count < room && are_facets(facets.substr(count * kStlFacetBytes))))) {
     warnings.push_back(source.name + ": the header says " + counted(count, "facet") +
                        ", but the size of the file is that of " + std::to_string(room) +
                        ": all are read");
     count = room;
   }
+  if (count > room && is_utf16(source.bytes))
+    throw source.error("STL in UTF-16: save it as ASCII or UTF-8");
+  if (count > room && source.bytes.substr(0, 512).find('\0') == source.bytes.npos)
+    throw source.error("not an STL file: text that does not begin with 'solid' or 'facet'");
   if (count > room)
     throw source.error_at_byte(source.bytes.size(), "the file ends after " + std::to_string(room) +
                                                         " of " + std::to_string(count) + " facets");
   if (count == 0) throw source.error("STL with 0 facets: there is no surface to read");
   const std::size_t size = count * kStlFacetBytes;
-  if (size < facets.size())
-    warnings.push_back(source.name + ": ignored " + counted(facets.size() - size, "byte") +
-                       " after the last facet");
+  if (size < facets.size()) {
+    const std::string_view rest = facets.substr(size);
+    warnings.push_back(source.name + ": ignored " + counted(rest.size(), "byte") +
+                       " after the last facet" +
+                       (is_exact_binary_stl(rest)
+                            ? ": another STL file of " + counted(stl_facet_count(rest), "facet")
+                        : rest.size() >= kStlFacetBytes
+                            ? ", room for " + counted(rest.size() / kStlFacetBytes, "more facet")
+                            : ""));
+  }
   return facets.substr(0, size);
 }
 
@@ -292,7 +316,9 @@ MeshWithAppearance read_stl(const MeshSource& source, ReadParts parts) {
   const bool starts_as_text =
       (same_word(word, "solid") || same_word(word, "facet")) && head.find('\0') == head.npos;
   if (starts_as_text && !is_exact_binary_stl(source.bytes)) {
-    const std::vector<std::string_view> texts = split_facets(source.bytes, kChunkBytes / 2);
+    std::string_view text = source.bytes;
+    while (text.ends_with('\0') || text.ends_with('\x1A')) text.remove_suffix(1);  // DOS ends.
+    const std::vector<std::string_view> texts = split_facets(text, kChunkBytes / 2);
     std::vector<std::size_t> irregular(texts.size());
     const auto visit = [&](std::size_t i, const auto& body) {
       irregular[i] = parse_stl_text(source, texts[i], i == 0, i + 1 == texts.size(), body);

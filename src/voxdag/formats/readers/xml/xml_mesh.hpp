@@ -22,7 +22,7 @@ class InstancedMesh {
 
   /// Starts a copy: triangles count their vertices from here.
   void begin_instance(const AffineTransform& transform);
-  /// Adds a vertex of the copy. Throws Error if it is not finite.
+  /// Adds a vertex of the copy.
   void add_vertex(Vec3d position);
   /// Adds a triangle of the copy's vertices, which exist. Turns it if the transform mirrors.
   void add_triangle(Triangle corners, std::uint32_t material);
