@@ -22,7 +22,7 @@ class TextCells {
     const std::string_view body = trim(line);
     if (body.size() > 1 && body[0] == '"' && body.find('"', 1) == body.size() - 1)
       rest_ = body.substr(1, body.size() - 2);
-    if (rest_.find(separator) == rest_.npos) separator_ = 0;
+    if (separator == 0 || rest_.find(separator) == rest_.npos) separator_ = 0;
     has_more_ = separator_ != 0;
   }
 
