@@ -150,6 +150,9 @@ TEST_F(XyzPointsTest, BadCellsAreRefused) {
   expect_error("x,y,z\n1 0,2,3\n", "line 2: number 1, '1 0', is not a number");
   expect_error("x,y,z\n1,\"2\" m,3\n", "line 2: number 2, '\"2\" m', is not a number");
   expect_error("tree 1,2,3,4\n", "line 1: number 1, 'tree 1', is not a number");
+  // Errors of the first points come before warnings.
+  write_text(dir_ / "p.csv", "E,N,H\n1,2,3\n1,2,x\n");
+  EXPECT_TRUE(error_of([&] { open_voxel_source(dir_ / "p.csv"); }).ends_with("is not a number"));
   expect_error("point id x y z i\n1 10 20 30 7\n",
                "line 2: has 5 numbers, but 6 columns have names");
 }

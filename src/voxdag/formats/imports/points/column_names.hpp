@@ -48,12 +48,14 @@ inline std::size_t value_of_name(std::string_view name) {
   return color < kCoordinates ? kPointValues : color;
 }
 
-/// Returns whether the name of a column says that it holds a colour.
+/// Returns whether the name of a column says that it holds a colour, or a component of one. A
+/// single letter may stand for something else.
 inline bool is_color_name(std::string_view name) {
   const std::string lower = lower_case(name);
   const std::size_t value = value_of_name(name);
-  return (value >= kCoordinates && value < kPointValues) || lower.find("rgb") != lower.npos ||
-         lower.find("color") != lower.npos || lower.find("colour") != lower.npos;
+  return (value >= kCoordinates && value < kPointValues && name.size() > 1) ||
+         lower.find("rgb") != lower.npos || lower.find("color") != lower.npos ||
+         lower.find("colour") != lower.npos;
 }
 
 }  // namespace voxdag

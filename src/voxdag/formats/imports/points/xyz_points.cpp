@@ -44,7 +44,7 @@ class XyzPoints : public VoxelSource {
       channel_columns_.push_back(column_of(channel.field));
       channels_.push_back(channel_spec(channel, ChannelKind::kF32));
     }
-    check_first_line();
+    check_first_points();
     if (!has_names_) find_colors();
     if (has_colors()) find_color_range();
   }
@@ -156,26 +156,33 @@ class XyzPoints : public VoxelSource {
     return names;
   }
 
-  /// Checks the first line of points. Finds the separator if the names do not tell it.
-  void check_first_line() {
+  /// Checks the first points, so that no warnings go before their errors. Finds the separator if
+  /// the names do not tell it.
+  void check_first_points() {
+    std::size_t points = 0;
     for_each_line([&](std::string_view line, std::uint64_t number) {
       if (count_of(line)) return true;
-      const bool has_mixed_names = separator_ == 0;
-      if (line.find(separator_) == line.npos)
-        separator_ = find_separator(
-            line, [&](const auto& cells) { return may_be_point(cells, line.find('\t')); });
-      const std::size_t count = cells_of(line, separator_).size();
-      // Names with blanks have shifted the columns behind them.
-      std::vector<std::size_t> used = columns_;
-      used.insert(used.end(), channel_columns_.begin(), channel_columns_.end());
-      if (label_column_) used.push_back(*label_column_);
-      if (has_mixed_names && count < names_.size() &&
-          *std::max_element(used.begin(), used.end()) >= used.size())
-        fail(number, "has " + std::to_string(count) + " numbers, but " +
-                         std::to_string(names_.size()) + " columns have names");
+      if (points == 0) check_columns(line, number);
       values_of(line, number);
-      return false;
+      return ++points < kSampledPoints;
     });
+  }
+
+  /// Checks the first line of points. Finds the separator if the names do not tell it.
+  void check_columns(std::string_view line, std::uint64_t number) {
+    const bool has_mixed_names = separator_ == 0;
+    if (line.find(separator_) == line.npos)
+      separator_ = find_separator(
+          line, [&](const auto& cells) { return may_be_point(cells, line.find('\t')); });
+    const std::size_t count = cells_of(line, separator_).size();
+    // Names with blanks have shifted the columns behind them.
+    std::vector<std::size_t> used = columns_;
+    used.insert(used.end(), channel_columns_.begin(), channel_columns_.end());
+    if (label_column_) used.push_back(*label_column_);
+    if (has_mixed_names && count < names_.size() &&
+        *std::max_element(used.begin(), used.end()) >= used.size())
+      fail(number, "has " + std::to_string(count) + " numbers, but " +
+                       std::to_string(names_.size()) + " columns have names");
   }
 
   /// Returns whether the coordinates are numbers, or some are empty cells. Tabs may align columns,
