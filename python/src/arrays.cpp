@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "dag.hpp"
+
 namespace py = pybind11;
 
 namespace voxdag::python {
@@ -99,10 +101,17 @@ std::vector<Vec3<std::uint8_t>> colors_of(const py::array& given) {
   const bool is_16_bits = kind == 'u' && given.itemsize() == 2;
   std::vector<Vec3<std::uint8_t>> colors;
   if (kind != 'f') {
-    for (const Vec3<std::int64_t> row : whole_rows_of(given, kName, 0, is_16_bits ? 65535 : 255)) {
+    const auto rows = whole_rows_of(given, kName, 0, is_16_bits ? 65535 : 255);
+    std::int64_t greatest = 0;
+    for (const Vec3<std::int64_t> row : rows) greatest = std::max({greatest, row.x, row.y, row.z});
+    // Many programs store 8 bits in 16.
+    const bool is_wide = is_16_bits && greatest > 255;
+    if (is_16_bits && !is_wide && greatest > 0)
+      warn("colors of 16 bits are taken as 0 to 255: none is greater");
+    for (const Vec3<std::int64_t> row : rows) {
       Vec3<std::uint8_t> color;
       for (int c = 0; c < 3; ++c)
-        color[c] = static_cast<std::uint8_t>(is_16_bits ? (row[c] + 128) / 257 : row[c]);
+        color[c] = static_cast<std::uint8_t>(is_wide ? (row[c] + 128) / 257 : row[c]);
       colors.push_back(color);
     }
     return colors;

@@ -70,6 +70,13 @@ def test_colors_of_every_type(colors):
     np.testing.assert_array_equal(dag.colors([[1, 2, 3]]), expected)
 
 
+def test_colors_of_8_bits_in_16():
+    expected = voxdag.from_coords([[1, 2, 3]], colors=np.array([[255, 0, 51]], np.uint8)).colors([[1, 2, 3]])
+    with pytest.warns(UserWarning, match="colors of 16 bits are taken as 0 to 255"):
+        dag = voxdag.from_coords([[1, 2, 3]], colors=np.array([[255, 0, 51]], np.uint16))
+    np.testing.assert_array_equal(dag.colors([[1, 2, 3]]), expected)
+
+
 @pytest.mark.parametrize("call, reason", [
     (lambda: voxdag.from_coords([[np.nan, 0, 0]]), "coords has nan, which must be a whole number"),
     (lambda: voxdag.from_coords([[1.9, 0, 0]]), "coords has 1.9"),

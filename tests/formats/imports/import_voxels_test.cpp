@@ -132,6 +132,29 @@ TEST_F(Import, ArraysOfOtherTypesAreRefused) {
   EXPECT_NE(import_error("a.xyy").find("is none of"), std::string::npos);
 }
 
+TEST_F(Import, RowsOfArraysTellTheRangeOfTheirColors) {
+  const auto expect = [&]<class T>(const char* type, std::array<T, 3> color, bool is_unsure) {
+    const std::array<float, 3> place{1, 2, 3};
+    NpyWriter writer(path("c.npy"),
+                     std::string("[('xyz', '<f4', (3,)), ('rgb', '") + type + "', (3,))]", {},
+                     12 + sizeof color, 1);
+    writer.write_bytes(place.data(), 12);
+    writer.write_bytes(color.data(), sizeof color);
+    writer.commit();
+    const auto source = open_voxel_source(path("c.npy"));
+    EXPECT_EQ(source->warnings().size(), is_unsure ? 1u : 0u) << type;
+    source->visit_all([&](const VoxelBatch& batch) {
+      ASSERT_EQ(batch.colors.size(), 1u);
+      EXPECT_EQ(batch.colors[0], (Rgb8{255, 51, 0})) << type;
+    });
+  };
+  expect("|u1", std::array<std::uint8_t, 3>{255, 51, 0}, false);
+  expect("<u2", std::array<std::uint16_t, 3>{65535, 13107, 0}, false);
+  expect("<u2", std::array<std::uint16_t, 3>{255, 51, 0}, true);
+  expect("<f4", std::array<float, 3>{1, 0.2f, 0}, false);
+  expect("<f8", std::array<double, 3>{255, 51, 0}, false);
+}
+
 TEST_F(Import, TextsOfPointsAreRead) {
   write_text(path("p.xyz"),
              "# x y z\n0 0 0 255 0 0\n\n  1.5\t2e0,+3; 7 # the last one\r\n-1,-1,-1\n4 4 4");

@@ -232,6 +232,8 @@ TEST_F(LasPointsTest, CompressedFilesAreRefusedByName) {
   std::string bytes = las_of(random_las(2, 3, 3, 1));
   put(bytes, 104, std::uint8_t{3 + 128});
   expect_error(bytes, "byte 104: is a compressed LAS file (LAZ)");
+  write_text(dir_ / "a.laz", las_of({}));
+  EXPECT_TRUE(open_voxel_source(dir_ / "a.laz")->has_points());
   const auto laz = dir_ / "cloud.LAZ";
   write_text(laz, bytes);
   EXPECT_NE(error_of([&] { open_voxel_source(laz); }).find("decompress it with laszip or PDAL"),

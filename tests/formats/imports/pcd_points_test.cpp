@@ -181,8 +181,12 @@ TEST_F(PcdPointsTest, ColoursMayBeThreeFields) {
     double scale;  ///< Of 8 bits.
   };
   for (const char* const kind : kKinds)
-    for (const auto& [type, size, scale] :
-         {Channel{'U', 1, 1}, {'U', 2, 257}, {'I', 4, 1}, {'F', 4, 1}, {'F', 8, 1 / 255.0}}) {
+    for (const auto& [type, size, scale] : {Channel{'U', 1, 1},
+                                            {'U', 2, 257},
+                                            {'U', 2, 1},
+                                            {'I', 4, 1},
+                                            {'F', 4, 1},
+                                            {'F', 8, 1 / 255.0}}) {
       PcdFile pcd = plain(kind);
       for (const char* const name : {"b", "g", "r"}) pcd.fields.push_back({name, type, size});
       const auto value = [&, scale = scale](std::size_t i, const std::string& name, int) {
@@ -191,8 +195,10 @@ TEST_F(PcdPointsTest, ColoursMayBeThreeFields) {
         return scale * c[name == "r" ? 0 : name == "g" ? 1 : 2];
       };
       EXPECT_EQ(read(pcd_of(pcd, 2, value)), cloud) << kind << type << size;
+      EXPECT_EQ(warnings(pcd_of(pcd, 2, value)),
+                size == 2 && scale == 1 ? kTakenAs255 : std::vector<std::string>());
     }
-  EXPECT_TRUE(read("FIELDS x y z r g\nPOINTS 1\nDATA ascii\n1 2 3 4 5\n").colors.empty());
+  EXPECT_TRUE(read("FIELDS x y z r g\nPOINTS 1\nDATA ASCII\n1 2 3 4 5\n").colors.empty());
   expect_error("FIELDS x y z r g b\nPOINTS 1\nDATA ascii\n1 2 3 4 5 red\n",
                "line 4: colour 'red' is not a number");
 }

@@ -144,10 +144,26 @@ TEST_F(PlyPointsTest, ColoursAreScaledToEightBits) {
          {0, 128, 255});
   expect("float", {"red", "green", "blue"}, Floats{0.5f, 1.5f, -1.0f}, {128, 255, 0});
   expect("double", {"red", "green", "blue"}, std::array<double, 3>{0.2, 1, 0}, {51, 255, 0});
+  expect("ushort", {"R", "G", "B"}, Shorts{255, 128, 0}, {255, 128, 0});
+  expect("short", {"r", "g", "b"}, std::array<std::int16_t, 3>{255, 128, 0}, {255, 128, 0});
   // A colour needs all three components.
   EXPECT_TRUE(read("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                    "property float z\nproperty uchar red\nend_header\n1 2 3 4\n")
                   .colors.empty());
+}
+
+TEST_F(PlyPointsTest, NamesMayHaveCapitalsAndSixteenBitsMayHoldEight) {
+  const auto text = [](const char* type, const char* red) {
+    return std::string(
+               "ply\nformat ascii 1.0\nelement vertex 1\nproperty float X\nproperty float "
+               "Y\nproperty float Z\n") +
+           "property " + type + " Red\nproperty " + type + " Green\nproperty " + type +
+           " Blue\nend_header\n1 2 3 " + red + " 128 0\n";
+  };
+  EXPECT_EQ(read(text("uchar", "255")), (PointCloud{{{1, 2, 3}}, {{255, 128, 0}}}));
+  EXPECT_TRUE(warnings(text("uchar", "255")).empty());
+  EXPECT_EQ(warnings(text("ushort", "255")), kTakenAs255);
+  EXPECT_TRUE(warnings(text("ushort", "256")).empty());
 }
 
 TEST_F(PlyPointsTest, EveryColourOfEightBitsIsKept) {

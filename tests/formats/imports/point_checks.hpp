@@ -24,6 +24,10 @@ struct PointCloud {
   friend bool operator==(const PointCloud&, const PointCloud&) = default;
 };
 
+/// The warning about 16 bits that hold 8.
+inline const std::vector<std::string> kTakenAs255 = {
+    "its colours of 16 bits are taken as 0 to 255: none is greater"};
+
 /// Appends the bytes of a number.
 template <class T>
 void append(std::string& bytes, T value, bool is_big_endian = false) {
@@ -81,6 +85,10 @@ class PointFile : public testing::Test {
       points.labels.insert(points.labels.end(), batch.labels.begin(), batch.labels.end());
     });
     return points;
+  }
+  std::vector<std::string> warnings(const std::string& bytes) const {
+    write_text(path_, bytes);
+    return open_voxel_source(path_)->warnings();
   }
   std::string error(const std::string& bytes) const {
     return error_of([&] { read(bytes); });

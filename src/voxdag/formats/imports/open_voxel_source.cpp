@@ -36,6 +36,10 @@ template <auto kOpen>
 Source with_fields(const Path& path, const Options& options) {
   return kOpen(path, options.labels, options.channels);
 }
+template <PointText kKind>
+Source open_text(const Path& path, const Options& options) {
+  return open_xyz_points(path, options.labels, options.channels, kKind);
+}
 /// For volumes, whose values can be labels and a channel.
 template <auto kOpen>
 Source with_values(const Path& path, const Options& options) {
@@ -53,12 +57,12 @@ Source open_octomap_file(const Path& path, const Options& options) {
 
 constexpr SourceFormat kSourceFormats[] = {
     {".npy", true, with_values<open_npy>},
-    {".xyz", false, with_fields<open_xyz_points>},
-    {".txt", false, with_fields<open_xyz_points>},
-    {".csv", false, with_fields<open_xyz_points>},
-    {".asc", false, with_fields<open_xyz_points>},
-    {".pts", false, with_fields<open_xyz_points>},
-    {".xyzrgb", false, with_fields<open_xyz_points>},
+    {".xyz", false, open_text<PointText::kAny>},
+    {".txt", false, open_text<PointText::kAny>},
+    {".csv", false, open_text<PointText::kAny>},
+    {".asc", false, open_text<PointText::kAny>},
+    {".pts", false, open_text<PointText::kPts>},
+    {".xyzrgb", false, open_text<PointText::kXyzrgb>},
     {".ply", false,
      [](const Path& path, const Options& options) {
        return open_ply_points(path, options.splats_are_points, options.labels, options.channels);
@@ -127,7 +131,7 @@ std::unique_ptr<VoxelSource> open_by_name(const Path& path, std::string name,
     }
     endings += std::string(endings.empty() ? "" : ", ") + format.ending;
   }
-  if (name.ends_with(".laz")) throw Error(path.string(), "", kCompressedLas);
+  if (name.ends_with(".laz")) return with_fields<open_las_points>(path, options);  // Perhaps .las.
   if (name.ends_with(".e57"))
     throw Error(path.string(), "",
                 "is an E57 file, which is not read: CloudCompare and PDAL save it as .ply");

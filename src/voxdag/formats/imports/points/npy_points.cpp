@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/npy_type.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
+#include "voxdag/formats/imports/points/color_range.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
 
 namespace voxdag {
@@ -139,7 +141,6 @@ class NpyPoints : public VoxelSource {
     find_rows(start.header, labels, channels);
     is_real_ = std::any_of(places_.begin(), places_.end(),
                            [](const Column& column) { return is_real(column.type.value); });
-    if (!colors_.empty()) find_color_scale();
     const std::uint64_t size = file_.text().size(), end = begin_ + rows_ * row_bytes_;
     if (size < end)
       throw Error(
@@ -147,6 +148,7 @@ class NpyPoints : public VoxelSource {
           "truncated: " + std::to_string(rows_) + " rows need " + std::to_string(end) + " bytes");
     if (size > end)
       warnings_.push_back("bytes after the array are left out: " + std::to_string(size - end));
+    if (!colors_.empty()) find_color_scale();
   }
 
   bool has_points() const override { return is_real_; }
@@ -246,13 +248,20 @@ class NpyPoints : public VoxelSource {
     label_ = Column{field.type, field.offset};
   }
 
-  /// Finds the range of the colours: 255 of bytes, 65535 of 16 bits, 1 of real numbers.
+  /// Finds the range of the colours: 255 of bytes; see color_range() for 16 bits and real numbers.
   void find_color_scale() {
     const ValueType type = colors_[0].type.value;
-    if (is_real(type)) {
-      color_scale_ = 1;
-    } else if (type == ValueType::kUint16) {
-      color_scale_ = 1.0 / 65535;
+    if (is_real(type) || type == ValueType::kUint16) {
+      double greatest = 0;
+      const char* row = file_.text().data() + begin_;
+      PassedPages pages(file_, row);
+      for (std::uint64_t i = 0; i < rows_; ++i, row += row_step_) {
+        for (const Column& column : colors_)
+          if (const double value = column.load(row); std::isfinite(value))
+            greatest = std::max(greatest, value);
+        pages.pass(row);
+      }
+      color_scale_ = 1 / color_range(is_real(type), greatest, warnings_);
     } else if (type != ValueType::kUint8) {
       warnings_.emplace_back(
           "its colours are left out: they are no bytes, 16 bits or real numbers");

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
 
 namespace voxdag {
@@ -123,11 +124,12 @@ class PcdHeaderParser {
   }
 
   void parse_data(std::string_view token) {
-    if (token == "ascii")
+    const std::string data = lower_case(token);
+    if (data == "ascii")
       header_.data = PcdData::kAscii;
-    else if (token == "binary")
+    else if (data == "binary")
       header_.data = PcdData::kBinary;
-    else if (token == "binary_compressed")
+    else if (data == "binary_compressed")
       header_.data = PcdData::kCompressed;
     else
       fail("DATA " + in_quotes(token) + " is not ascii, binary or binary_compressed");

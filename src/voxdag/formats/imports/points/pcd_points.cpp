@@ -9,6 +9,7 @@
 #include "voxdag/formats/imports/channels/channel_request.hpp"
 #include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
+#include "voxdag/formats/imports/points/color_range.hpp"
 #include "voxdag/formats/imports/points/load_value.hpp"
 #include "voxdag/formats/imports/points/lzf_stream.hpp"
 #include "voxdag/formats/imports/points/pcd_header.hpp"
@@ -114,6 +115,7 @@ class PcdPoints : public VoxelSource {
   bool has_colors() const override { return color_fields_ > 0; }
   bool has_labels() const override { return has_labels_; }
   std::vector<ChannelSpec> channels() const override { return channels_; }
+  std::vector<std::string> warnings() const override { return warnings_; }
   CoordinateError coordinate_error() const override {
     const bool has_floats = std::any_of(used_.begin(), used_.begin() + 3, [](const PcdField& f) {
       return f.type == 'F' && f.size == 4;
@@ -140,13 +142,14 @@ class PcdPoints : public VoxelSource {
       used_.push_back(header_.fields[found]);
     }
     color_fields_ = 3;
-    if (used_[3].type != 'F') {
-      color_range_ = used_[3].size == 2 ? 65535 : 255;
-      return;
-    }
+    const bool are_real = used_[3].type == 'F';
+    color_range_ = 255;
+    if (!are_real && used_[3].size != 2) return;
+    double greatest = 0;
     for_each_point([&](const PcdValues& values) {
-      if (std::max({values[3], values[4], values[5]}) >= 2) color_range_ = 255;
+      greatest = std::max({greatest, values[3], values[4], values[5]});
     });
+    color_range_ = color_range(are_real, greatest, warnings_);
   }
 
   /// Calls use(point) for all points.
@@ -313,7 +316,8 @@ class PcdPoints : public VoxelSource {
   std::vector<ChannelSpec> channels_;
   double color_range_ = 1;       ///< The greatest component of r, g and b.
   std::string_view compressed_;  ///< None if no point is compressed.
-  bool is_stored_ = false;       ///< The data of a compressed file are as they were.
+  std::vector<std::string> warnings_;
+  bool is_stored_ = false;  ///< The data of a compressed file are as they were.
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "voxdag/formats/imports/channels/channel_request.hpp"
 #include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
+#include "voxdag/formats/imports/points/color_range.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/readers/ply/ply_color.hpp"
 #include "voxdag/formats/readers/ply/ply_header.hpp"
@@ -74,15 +75,14 @@ class PlyPoints : public VoxelSource {
           channel_spec(channels[channels_.size()], kind_of_property(properties[found].type)));
       columns_.push_back(static_cast<int>(found));
     }
-    if (!is_harmonic && std::any_of(color.begin(), color.begin() + 3,
-                                    [&](int p) { return !is_integer(type_of(p)); }))
-      find_color_range();
+    if (!is_harmonic) find_color_range();
   }
 
   bool has_points() const override { return true; }
   bool has_splats() const override { return has_splats_; }
   bool has_labels() const override { return has_labels_; }
   std::vector<ChannelSpec> channels() const override { return channels_; }
+  std::vector<std::string> warnings() const override { return warnings_; }
   std::optional<Grid> grid() const override { return grid_; }
   std::optional<char> up() const override { return up_; }
   bool has_colors() const override { return first_splat_column_ > 3; }
@@ -141,14 +141,21 @@ class PlyPoints : public VoxelSource {
     return vertex().properties[static_cast<std::size_t>(property)].type;
   }
 
-  /// Finds whether colours of real numbers reach 1 or 255: they reach 255 if one is 2 or more.
+  /// Finds the range of colours of real numbers and of 16 bits.
   void find_color_range() {
+    const auto has = [&](const auto& is_kind) {
+      return std::any_of(columns_.begin() + 3, columns_.begin() + 6,
+                         [&](int property) { return is_kind(type_of(property)); });
+    };
+    const bool are_real = has([](PlyType type) { return !is_integer(type); });
+    if (!are_real && !has([](PlyType type) { return size_of(type) == 2; })) return;
     double greatest = 0;
     for_each_vertex([&](const Values& values) {
       for (std::size_t c = 3; c < 6; ++c)
         if (std::isfinite(values[c])) greatest = std::max(greatest, values[c]);
     });
-    if (greatest >= 2) color_scales_.fill(1.0 / 255);
+    const double range = color_range(are_real, greatest, warnings_);
+    if (range == 255) color_scales_.fill(1.0 / 255);
   }
 
   void add(BatchedVoxels& points, const Values& values) const {
@@ -272,6 +279,7 @@ class PlyPoints : public VoxelSource {
   bool has_splats_ = false, has_labels_ = false;
   std::array<double, 3> color_scales_{};
   double color_offset_ = 0;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace

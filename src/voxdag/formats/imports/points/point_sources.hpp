@@ -16,20 +16,30 @@ std::unique_ptr<VoxelSource> open_npy_points(const std::filesystem::path& path,
                                              const NpyStart& start, const LabelRequest& labels = {},
                                              const std::vector<ChannelRequest>& channels = {});
 
-/// Opens a text of points: three numbers in each line, and perhaps more. Blanks, tabs, commas,
-/// semicolons or quotes separate them; # and // begin comments. At most 1 MiB per line.
+/// Texts of points whose ending tells where colours are.
+enum class PointText : std::uint8_t {
+  kAny,
+  kPts,    ///< Of 7 or 10 columns, 5 to 7 are the colour, behind the intensity.
+  kXyzrgb  ///< Columns 4 to 6 are the colour.
+};
+
+/// Opens a text of points: three numbers in each line, and perhaps more. Lines are cut into cells
+/// at semicolons, tabs, commas or bars, if the names of the columns or the first points have them;
+/// else at blanks, too (TextCells). # and //, and % at the start of a line, begin comments. At most
+/// 1 MiB per line.
 ///
 /// A comment or a line before the points may name the columns: x, y, z, r, g, b, or red, green,
 /// blue. Without names, the columns behind the coordinates are a colour if the first 4,096 points
-/// have whole numbers from 0 to 255 there, not only 0 and 1; behind one column more if not, as in
-/// .pts files. A line with one whole number counts points. A column of labels or of a channel has
-/// a name, or a number from 4 on; channels are f32 by default.
+/// have whole numbers from 0 to 255 there, not only 0 and 1; behind one column more if not. A line
+/// with one whole number counts points. A column of labels or of a channel has a name, or a number
+/// from 4 on; channels are f32 by default.
 ///
 /// Throws Error with the line: numbers that are none, commas inside numbers, colours beyond the
-/// range of the first points, and texts in UTF-16.
+/// range of the first points, more names than numbers, and texts in UTF-16.
 std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path,
                                              const LabelRequest& labels = {},
-                                             const std::vector<ChannelRequest>& channels = {});
+                                             const std::vector<ChannelRequest>& channels = {},
+                                             PointText kind = PointText::kAny);
 
 /// Opens the vertices of a PLY file as points, in ascii and in both binary orders; ignores faces
 /// and other elements. Numbers of text are float64, whatever their type is called. The colours are

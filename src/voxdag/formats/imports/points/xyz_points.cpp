@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,13 +8,13 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
-#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/channels/channel_request.hpp"
 #include "voxdag/formats/imports/labels/label_value.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
+#include "voxdag/formats/imports/points/column_names.hpp"
 #include "voxdag/formats/imports/points/point_sources.hpp"
-#include "voxdag/formats/readers/text_scan.hpp"
+#include "voxdag/formats/imports/points/text_cells.hpp"
 
 namespace voxdag {
 namespace {
@@ -23,107 +22,21 @@ namespace {
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 /// Points that decide whether the columns behind the coordinates are colours.
 constexpr std::size_t kSampledPoints = 4096;
-constexpr std::size_t kCoordinates = 3, kValues = 6;  ///< Coordinates, then a colour.
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; }
-bool is_comma(char c) { return c == ',' || c == ';'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/// Cuts a line into fields. Beside a comma or semicolon, a field may be empty.
-class Fields {
- public:
-  explicit Fields(std::string_view line) : rest_(line) {}
-
-  /// Sets `field` to the next one. Returns false if there is none.
-  bool next(std::string_view& field) {
-    skip_blanks();
-    if (rest_.empty() && !is_after_comma_) return false;
-    std::size_t end = 0;
-    while (end < rest_.size() && !is_blank(rest_[end]) && !is_comma(rest_[end])) ++end;
-    field = rest_.substr(0, end);
-    rest_.remove_prefix(end);
-    skip_blanks();
-    is_after_comma_ = !rest_.empty() && is_comma(rest_[0]);
-    if (is_after_comma_) rest_.remove_prefix(1);
-    return true;
-  }
-
- private:
-  void skip_blanks() {
-    std::size_t blanks = 0;
-    while (blanks < rest_.size() && is_blank(rest_[blanks])) ++blanks;
-    rest_.remove_prefix(blanks);
-  }
-  std::string_view rest_;
-  bool is_after_comma_ = false;
-};
-
-std::vector<std::string_view> fields_of(std::string_view line) {
-  std::vector<std::string_view> fields;
-  std::string_view field;
-  for (Fields rest(line); rest.next(field);) fields.push_back(field);
-  return fields;
-}
-
-/// Returns whether Windows wrote a number that is not finite: "1.#QNAN", "-1.#IND", "1.#INF00".
-bool is_windows_nan(std::string_view field) {
-  const std::size_t sign = field.rfind('#');
-  return sign != field.npos && sign > 1 && field[sign - 1] == '.' && field[sign - 2] == '1';
-}
-
-/// Parses a number. Numbers of is_windows_nan() are NaN.
-bool parse_number(std::string_view field, double& value) {
-  if (parse_float(field, value)) return true;
-  value = std::numeric_limits<double>::quiet_NaN();
-  return is_windows_nan(field);
-}
-
-/// Removes a comment, which begins with # or //, from a line.
-std::string_view without_comment(std::string_view line) {
-  std::size_t end = line.find('#');
-  while (end != line.npos && is_windows_nan(line.substr(0, end + 1))) end = line.find('#', end + 1);
-  return line.substr(0, std::min(end, line.find("//")));
-}
-
-bool is_byte_text(std::string_view field) {
-  double value = 0;
-  return std::all_of(field.begin(), field.end(), is_digit) && parse_float(field, value) &&
-         value <= 255;
-}
-
-/// Returns whether a line has commas inside numbers, and another character between them.
-bool has_decimal_commas(std::string_view line) {
-  const std::string_view body = trim(line);
-  if (body.find_first_of(" \t;") == body.npos) return false;
-  for (std::size_t at = body.find(','); at != body.npos; at = body.find(',', at + 1))
-    if (at > 0 && at + 1 < body.size() && is_digit(body[at - 1]) && is_digit(body[at + 1]))
-      return true;
-  return false;
-}
-
-/// Returns which value the name of a column stands for; kValues for another one.
-std::size_t value_of_name(std::string_view name) {
-  const std::string lower = lower_case(name);
-  constexpr std::string_view kNames[][kValues] = {
-      {"x", "y", "z", "r", "g", "b"},
-      {"points:0", "points:1", "points:2", "red", "green", "blue"},
-      {"points_0", "points_1", "points_2", "rgb:0", "rgb:1", "rgb:2"},
-      {"", "", "", "r8", "g8", "b8"},
-      {"", "", "", "rf", "gf", "bf"}};
-  if (lower.empty()) return kValues;
-  for (const auto& names : kNames)
-    for (std::size_t value = 0; value < kValues; ++value)
-      if (lower == names[value]) return value;
-  return kValues;
-}
 
 class XyzPoints : public VoxelSource {
  public:
-  XyzPoints(const std::filesystem::path& path, const LabelRequest& labels,
+  XyzPoints(const std::filesystem::path& path, PointText kind, const LabelRequest& labels,
             const std::vector<ChannelRequest>& channels)
-      : name_(path.string()), file_(path, MappedFile::Access::kSequential) {
+      : name_(path.string()), kind_(kind), file_(path, MappedFile::Access::kSequential) {
     if (file_.text().starts_with("\xFF\xFE") || file_.text().starts_with("\xFE\xFF"))
       throw Error(name_, "", "is a text in UTF-16: save it in UTF-8");
+    text_ = without_byte_order_mark(file_.text());
+    constexpr std::string_view kFiller("\0\x1A", 2);
+    if (const std::size_t end = text_.find_last_not_of(kFiller) + 1; end < text_.size()) {
+      warnings_.push_back("bytes after the text, 0 or Ctrl-Z, are left out: " +
+                          std::to_string(text_.size() - end));
+      text_ = text_.substr(0, end);
+    }
     find_header();
     if (labels) label_column_ = column_of(*labels);
     for (const ChannelRequest& channel : channels) {
@@ -131,6 +44,7 @@ class XyzPoints : public VoxelSource {
       channel_columns_.push_back(column_of(channel.field));
       channels_.push_back(channel_spec(channel, ChannelKind::kF32));
     }
+    check_first_points();
     if (!has_names_) find_colors();
     if (has_colors()) find_color_range();
   }
@@ -166,11 +80,15 @@ class XyzPoints : public VoxelSource {
     throw Error(name_, "line " + std::to_string(line), reason);
   }
 
+  [[noreturn]] void fail_at_commas(std::uint64_t line) const {
+    fail(line, "has commas inside numbers and other separators between them: write decimal points");
+  }
+
   /// Calls use(line, number) for the lines with fields, without comments, until it returns false.
   /// Leaves out the header.
   template <class Use>
   void for_each_line(const Use& use) const {
-    std::string_view text = without_byte_order_mark(file_.text());
+    std::string_view text = text_;
     const char line_end = line_end_of(text);
     for (std::uint64_t number = 1; !text.empty(); ++number) {
       std::string_view line = next_line(text, line_end);
@@ -184,31 +102,103 @@ class XyzPoints : public VoxelSource {
   /// Finds the names of the columns: in the last comment before the first points, or in a line
   /// that does not begin with a number.
   void find_header() {
-    std::string_view text = without_byte_order_mark(file_.text());
+    std::string_view text = text_;
     const char line_end = line_end_of(text);
     std::string_view names;
     for (std::uint64_t number = 1; !text.empty(); ++number) {
-      std::string_view line = trim(next_line(text, line_end));
-      const bool is_comment = line.starts_with('#') || line.starts_with("//");
-      while (!line.empty() && (line[0] == '#' || line[0] == '/')) line.remove_prefix(1);
-      const std::vector<std::string_view> fields = fields_of(line.substr(0, kMaxLineBytes));
-      double ignored = 0;
-      if (is_comment) {
-        if (has_coordinate_names(fields)) names = line;
+      std::string_view line = next_line(text, line_end).substr(0, kMaxLineBytes);
+      const std::size_t mark = comment_mark(line);
+      if (mark > 0) {
+        line = trim(line.substr(mark));
+        if (has_coordinate_names(names_of(line))) names = line;
         continue;
       }
-      if (fields.empty() || count_of(line)) continue;
-      const bool has_numbers =
-          std::any_of(fields.begin(), fields.end(),
-                      [&](std::string_view field) { return parse_number(field, ignored); });
-      if (fields[0].empty() ? has_numbers : parse_number(fields[0], ignored)) break;
-      if (fields.size() < kCoordinates || header_line_ > 0 || has_numbers)
-        fail(number, "number 1, " + in_quotes(fields[0]) + ", is not a number");
+      line = without_comment(line);
+      const std::vector<std::string_view> cells = names_of(line), any = cells_of(line, 0);
+      if (cells.empty() || any.empty() || count_of(line)) continue;
+      const bool are_names = header_line_ == 0 && has_coordinate_names(cells);
+      if (!names.empty() && !are_names) break;
+      if (!are_names) {
+        double ignored = 0;
+        const bool has_numbers =
+            std::any_of(cells.begin(), cells.end(),
+                        [&](std::string_view cell) { return parse_cell(cell, ignored); });
+        if (cells[0].empty() ? has_numbers
+                             : parse_cell(cells[0], ignored) || parse_cell(any[0], ignored) ||
+                                   has_inner_comma(any[0]))
+          break;
+        if (cells.size() < kCoordinates || has_numbers)
+          fail(number, "number 1, " + in_quotes(cells[0]) + ", is not a number");
+      }
       header_line_ = number;
       names = line;
     }
-    use_names(fields_of(names));
-    for (const std::string_view name : fields_of(names)) names_.emplace_back(name);
+    separator_ = separator_of_names(names);
+    const std::vector<std::string_view> cells = names_of(names);
+    names_.assign(cells.begin(), cells.end());
+    use_names(cells);
+  }
+
+  static char separator_of_names(std::string_view line) {
+    return find_separator(line, [](const auto&) { return true; });
+  }
+  /// Returns the names of columns. Between blanks, leaves out units: "x [m] y [m] z [m]".
+  static std::vector<std::string_view> names_of(std::string_view line) {
+    const char separator = separator_of_names(line);
+    std::vector<std::string_view> names = cells_of(line, separator);
+    bool is_unit = false;
+    if (separator == 0)
+      std::erase_if(names, [&](std::string_view name) {
+        const bool is_inside = is_unit || name.starts_with('[') || name.starts_with('(');
+        is_unit = is_inside && !name.ends_with(']') && !name.ends_with(')');
+        return is_inside;
+      });
+    return names;
+  }
+
+  /// Checks the first points, so that no warnings go before their errors. Finds the separator if
+  /// the names do not tell it.
+  void check_first_points() {
+    std::size_t points = 0;
+    for_each_line([&](std::string_view line, std::uint64_t number) {
+      if (count_of(line)) return true;
+      if (points == 0) check_columns(line, number);
+      values_of(line, number);
+      return ++points < kSampledPoints;
+    });
+  }
+
+  /// Checks the first line of points. Finds the separator if the names do not tell it.
+  void check_columns(std::string_view line, std::uint64_t number) {
+    const bool has_mixed_names = separator_ == 0;
+    if (line.find(separator_) == line.npos)
+      separator_ = find_separator(
+          line, [&](const auto& cells) { return may_be_point(cells, line.find('\t')); });
+    const std::size_t count = cells_of(line, separator_).size();
+    // Names with blanks have shifted the columns behind them.
+    std::vector<std::size_t> used = columns_;
+    used.insert(used.end(), channel_columns_.begin(), channel_columns_.end());
+    if (label_column_) used.push_back(*label_column_);
+    if (has_mixed_names && count < names_.size() &&
+        *std::max_element(used.begin(), used.end()) >= used.size())
+      fail(number, "has " + std::to_string(count) + " numbers, but " +
+                       std::to_string(names_.size()) + " columns have names");
+  }
+
+  /// Returns whether the coordinates are numbers, or some are empty cells. Tabs may align columns,
+  /// so that an empty cell between them is none.
+  bool may_be_point(const std::vector<std::string_view>& cells, std::size_t tab) const {
+    bool has_number = false;
+    for (std::size_t c = 0; c < kCoordinates; ++c) {
+      if (columns_[c] >= cells.size()) return false;
+      double ignored = 0;
+      const std::string_view cell = cells[columns_[c]];
+      if (parse_cell(cell, ignored))
+        has_number = true;
+      else if (!cell.empty() || tab != std::string_view::npos)
+        return false;
+    }
+    return has_number;
   }
 
   /// Returns a column behind the coordinates, by its name or its number, from 1 on. An empty text
@@ -223,10 +213,10 @@ class XyzPoints : public VoxelSource {
   /// Adds the label and the channels of the point in a line.
   void add_fields(BatchedVoxels& points, std::string_view line, std::uint64_t number) const {
     if (!label_column_ && channels_.empty()) return;
-    const std::vector<std::string_view> fields = fields_of(line);
+    const std::vector<std::string_view> fields = cells_of(line, separator_);
     const auto value_in = [&](std::size_t column, const char* what) {
       double value = 0;
-      if (column >= fields.size() || !parse_number(fields[column], value))
+      if (column >= fields.size() || !parse_cell(fields[column], value))
         fail(number, std::string("has no ") + what + " in column " + std::to_string(column + 1));
       return value;
     };
@@ -236,69 +226,95 @@ class XyzPoints : public VoxelSource {
   }
 
   static bool has_coordinate_names(const std::vector<std::string_view>& fields) {
-    std::array<bool, kValues + 1> found{};
+    std::array<bool, kPointValues + 1> found{};
     for (const std::string_view field : fields) found[value_of_name(field)] = true;
     return found[0] && found[1] && found[2];
   }
 
   void use_names(const std::vector<std::string_view>& names) {
     if (names.empty()) return;
-    if (!has_coordinate_names(names)) {
-      warnings_.push_back("its columns " + in_quotes(names[0]) + ", " + in_quotes(names[1]) +
-                          " and " + in_quotes(names[2]) + " are taken for x, y and z");
-      return;
-    }
-    std::array<std::optional<std::size_t>, kValues + 1> columns;
+    std::array<std::optional<std::size_t>, kPointValues + 1> columns;
     for (std::size_t column = names.size(); column-- > 0;)
       columns[value_of_name(names[column])] = column;
-    const bool has_colors = columns[3] && columns[4] && columns[5];
-    columns_.clear();
-    for (std::size_t value = 0; value < (has_colors ? kValues : kCoordinates); ++value)
+    const bool has_places = columns[0] && columns[1] && columns[2],
+               has_colors = columns[3] && columns[4] && columns[5];
+    for (std::size_t value = 0; has_places && value < kCoordinates; ++value)
+      columns_[value] = *columns[value];
+    for (std::size_t value = kCoordinates; has_colors && value < kPointValues; ++value)
       columns_.push_back(*columns[value]);
-    has_names_ = true;
+    has_names_ = has_places || has_colors;
+    if (!has_places)
+      warnings_.push_back("its columns " + in_quotes(names[0]) + ", " + in_quotes(names[1]) +
+                          " and " + in_quotes(names[2]) + " are taken for x, y and z");
+    const auto color = std::find_if(names.begin(), names.end(), is_color_name);
+    if (has_names_ && !has_colors && color != names.end())
+      warnings_.push_back("its column " + in_quotes(*color) +
+                          " is left out: colours are three columns, red, green and blue");
   }
 
   /// Finds colours without names: three columns of whole numbers to 255 behind the coordinates, or
-  /// behind a normal, or behind a column more, the intensity of .pts files.
+  /// behind a normal, or behind a column more. The endings .pts and .xyzrgb tell where.
   void find_colors() {
     std::size_t points = 0, fewest = SIZE_MAX;
     constexpr std::size_t kColumns = 9;
     std::array<bool, kColumns> is_byte;
     is_byte.fill(true);
-    std::array<double, kColumns> greatest{};
+    std::array<double, kColumns> greatest{}, least;
+    least.fill(255);
     for_each_line([&](std::string_view line, std::uint64_t) {
       if (count_of(line)) return true;
-      const std::vector<std::string_view> fields = fields_of(line);
+      const std::vector<std::string_view> fields = cells_of(line, separator_);
       fewest = std::min(fewest, fields.size());
       for (std::size_t i = kCoordinates; i < std::min(kColumns, fields.size()); ++i) {
         double value = 0;
         is_byte[i] &= is_byte_text(fields[i]) && parse_float(fields[i], value);
         greatest[i] = std::max(greatest[i], value);
+        least[i] = std::min(least[i], value);
       }
       return ++points < kSampledPoints;
     });
     if (points == 0 || fewest <= kCoordinates) return;
+    for (std::size_t i = 0; i < kColumns; ++i)
+      is_byte[i] &=
+          label_column_ != i &&
+          std::find(channel_columns_.begin(), channel_columns_.end(), i) == channel_columns_.end();
+    const auto are_bytes = [&](std::size_t first) {
+      return fewest >= first + 3 && is_byte[first] && is_byte[first + 1] && is_byte[first + 2];
+    };
+    if (kind_ == PointText::kXyzrgb && fewest >= kPointValues) return use_colors(3);
+    // A colour and perhaps a normal follow the intensity of .pts files.
+    const bool is_pts = kind_ == PointText::kPts && (fewest == 7 || fewest == 10) && are_bytes(4);
+    // Normals along an axis are whole numbers, too.
+    const auto are_colors = [&](std::size_t first) {
+      return are_bytes(first) &&
+             (is_pts || std::max({greatest[first], greatest[first + 1], greatest[first + 2]}) > 1);
+    };
     for (const std::size_t first : {std::size_t{3}, std::size_t{6}, std::size_t{4}}) {
-      if (fewest < first + 3) continue;
-      const bool are_bytes = is_byte[first] && is_byte[first + 1] && is_byte[first + 2];
-      // Normals along an axis are whole numbers, too.
-      const bool are_colors =
-          are_bytes && std::max({greatest[first], greatest[first + 1], greatest[first + 2]}) > 1;
-      if (!are_colors) continue;
-      const std::string columns =
-          "its columns " + std::to_string(first + 1) + " to " + std::to_string(first + 3);
+      if (!are_colors(first) || (is_pts && first != 4)) continue;
       if (const std::uint64_t line = line_without_color(first)) {
-        warnings_.push_back(columns + " are left out: they have no names, and line " +
-                            std::to_string(line) + " has no colour there");
+        warnings_.push_back(numbers_of_columns(first) +
+                            " are left out: they have no names, and line " + std::to_string(line) +
+                            " has no colour there");
         return;
       }
-      for (std::size_t c = 0; c < 3; ++c) columns_.push_back(first + c);
-      return;
+      // Column 7 is no opacity and no normal.
+      if (first == 3 && are_colors(4) && greatest[6] > 1 && least[6] < 255)
+        warnings_.push_back(numbers_of_columns(3) +
+                            " are taken for the colour, which columns 5 to 7 could be, "
+                            "too: they have no names");
+      return use_colors(first);
     }
-    if (fewest >= kValues && !label_column_ && channels_.empty())
+    if (fewest >= kPointValues && !label_column_ && channels_.empty())
       warnings_.emplace_back(
           "its columns after the third are left out: they have no names, and are no colours of "
           "whole numbers from 0 to 255");
+  }
+
+  static std::string numbers_of_columns(std::size_t first) {
+    return "its columns " + std::to_string(first + 1) + " to " + std::to_string(first + 3);
+  }
+  void use_colors(std::size_t first) {
+    for (std::size_t c = 0; c < 3; ++c) columns_.push_back(first + c);
   }
 
   /// Returns the first line whose columns [first, first + 3) are no whole numbers from 0 to 255;
@@ -308,7 +324,7 @@ class XyzPoints : public VoxelSource {
     std::uint64_t found = 0;
     for_each_line([&](std::string_view line, std::uint64_t number) {
       if (count_of(line)) return true;
-      Fields fields(line);
+      TextCells fields(line, separator_);
       std::string_view field;
       for (std::size_t column = 0; column < first + 3; ++column)
         if (!fields.next(field) || (column >= first && !is_byte_text(field))) found = number;
@@ -325,9 +341,9 @@ class XyzPoints : public VoxelSource {
     bool has_points = false;  // "0.0" is no whole number.
     for_each_line([&](std::string_view line, std::uint64_t number) {
       if (count_of(line)) return true;
-      const std::array<double, kValues> values = values_of(line, number);
-      const std::vector<std::string_view> fields = fields_of(line);
-      for (std::size_t c = kCoordinates; c < kValues; ++c) {
+      const std::array<double, kPointValues> values = values_of(line, number);
+      const std::vector<std::string_view> fields = cells_of(line, separator_);
+      for (std::size_t c = kCoordinates; c < kPointValues; ++c) {
         greatest = std::max(greatest, values[c]);
         has_points |= fields[columns_[c]].find('.') != std::string_view::npos;
       }
@@ -344,21 +360,23 @@ class XyzPoints : public VoxelSource {
     return static_cast<std::uint64_t>(count);
   }
 
-  std::array<double, kValues> values_of(std::string_view line, std::uint64_t number) const {
-    if (line.find(',') != line.npos && has_decimal_commas(line))
-      fail(number,
-           "has commas inside numbers and other separators between them: write decimal "
-           "points");
-    std::array<double, kValues> values{};
+  std::array<double, kPointValues> values_of(std::string_view line, std::uint64_t number) const {
+    const bool is_cut_once = separator_ != 0 && line.find(separator_) != line.npos;
+    if (!is_cut_once && line.find_first_of(" \t;\"") != line.npos && has_inner_comma(trim(line)))
+      fail_at_commas(number);
+    std::array<double, kPointValues> values{};
     std::size_t found = 0, column = 0;
-    Fields fields(line);
+    TextCells fields(line, separator_);
     for (std::string_view field; found < columns_.size() && fields.next(field); ++column) {
       for (std::size_t value = 0; value < columns_.size(); ++value) {
         if (columns_[value] != column) continue;
-        if (!parse_number(field, values[value]) && (value >= kCoordinates || !field.empty()))
-          fail(number, "number " + std::to_string(column + 1) + ", " + in_quotes(field) +
-                           ", is not a number");
-        ++found;
+        if (parse_cell(field, values[value]) || (value < kCoordinates && field.empty())) {
+          ++found;
+          continue;
+        }
+        if (has_inner_comma(field)) fail_at_commas(number);
+        fail(number, "number " + std::to_string(column + 1) + ", " + in_quotes(field) +
+                         ", is not a number");
       }
     }
     if (found < columns_.size())
@@ -371,7 +389,7 @@ class XyzPoints : public VoxelSource {
   }
 
   void add(BatchedVoxels& points, std::string_view line, std::uint64_t number) const {
-    const std::array<double, kValues> values = values_of(line, number);
+    const std::array<double, kPointValues> values = values_of(line, number);
     const Vec3d point{values[0], values[1], values[2]};
     add_fields(points, line, number);
     if (!has_colors()) return points.add(point);
@@ -379,7 +397,8 @@ class XyzPoints : public VoxelSource {
     for (std::size_t c = 0; c < 3; ++c) {
       const double value = values[kCoordinates + c];
       if (!(value >= 0 && value <= color_range_))
-        fail(number, "colour " + std::string(fields_of(line)[columns_[kCoordinates + c]]) +
+        fail(number, "colour " +
+                         std::string(cells_of(line, separator_)[columns_[kCoordinates + c]]) +
                          " is not from 0 to " + std::to_string(static_cast<int>(color_range_)) +
                          ", as those of the first points are");
       color[c] = color_byte(value / color_range_);
@@ -388,7 +407,10 @@ class XyzPoints : public VoxelSource {
   }
 
   std::string name_;
+  PointText kind_;
   MappedFile file_;
+  std::string_view text_;  ///< Without a byte order mark, and bytes that fill it up at its end.
+  char separator_ = 0;     ///< Cuts lines into cells; 0: see TextCells.
   std::uint64_t header_line_ = 0;  ///< The line with the names of the columns; 0: none.
   bool has_names_ = false;
   std::vector<std::size_t> columns_{0, 1, 2};  ///< Of the coordinates, and perhaps of the colour.
@@ -404,8 +426,9 @@ class XyzPoints : public VoxelSource {
 
 std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path,
                                              const LabelRequest& labels,
-                                             const std::vector<ChannelRequest>& channels) {
-  return std::make_unique<XyzPoints>(path, labels, channels);
+                                             const std::vector<ChannelRequest>& channels,
+                                             PointText kind) {
+  return std::make_unique<XyzPoints>(path, kind, labels, channels);
 }
 
 }  // namespace voxdag

@@ -5,7 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/readers/ply/ply_header.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
 
@@ -21,9 +20,7 @@ inline std::vector<int> find_ply_scalars(const PlyElement& element,
                                          std::initializer_list<std::string_view> names) {
   std::vector<int> found;
   for (const std::string_view name : names) {
-    int property = element.find({name});
-    for (std::size_t i = 0; property < 0 && i < element.properties.size(); ++i)
-      if (lower_case(element.properties[i].name) == name) property = static_cast<int>(i);
+    const int property = element.find({name});
     if (property < 0 || element.properties[property].count_type) return {};
     found.push_back(property);
   }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
 
 namespace voxdag {
@@ -231,6 +232,9 @@ class PlyHeaderParser {
 int PlyElement::find(std::initializer_list<std::string_view> names) const {
   for (std::size_t i = 0; i < properties.size(); ++i)
     if (std::find(names.begin(), names.end(), properties[i].name) != names.end())
+      return static_cast<int>(i);
+  for (std::size_t i = 0; i < properties.size(); ++i)
+    if (std::find(names.begin(), names.end(), lower_case(properties[i].name)) != names.end())
       return static_cast<int>(i);
   return -1;
 }

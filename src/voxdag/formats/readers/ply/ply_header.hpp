@@ -40,7 +40,8 @@ struct PlyElement {
   std::uint64_t count = 0;  ///< Number of rows.
   CountedVector<PlyProperty> properties;
 
-  /// Returns the index of the property that has one of the names, or -1.
+  /// Returns the index of the property that has one of the names, or -1. If none has one as it is,
+  /// capitals do not matter.
   int find(std::initializer_list<std::string_view> names) const;
   /// Returns the minimum number of bytes of a row in a binary file.
   std::size_t least_row_bytes() const;
