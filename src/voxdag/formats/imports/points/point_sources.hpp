@@ -11,7 +11,8 @@ inline constexpr const char* kCompressedLas =
 
 /// Opens an array of N x 3 numbers of any type and order, or a structured array whose rows have the
 /// fields x, y and z, or one of three items called voxel, position or xyz. Integers are voxels,
-/// real numbers are points. The fields red, green and blue, or color, are colours.
+/// real numbers are points. The fields red, green and blue, or color, are colours, in the range of
+/// color_range().
 std::unique_ptr<VoxelSource> open_npy_points(const std::filesystem::path& path,
                                              const NpyStart& start, const LabelRequest& labels = {},
                                              const std::vector<ChannelRequest>& channels = {});
@@ -44,10 +45,10 @@ std::unique_ptr<VoxelSource> open_xyz_points(const std::filesystem::path& path,
 /// Opens the vertices of a PLY file as points, in ascii and in both binary orders; ignores faces
 /// and other elements. Numbers of text are float64, whatever their type is called. The colours are
 /// the properties that the mesh reader knows, with its scales: red, green and blue, or
-/// diffuse_red ..., or r ...; integers up to the greatest value of 8 or 16 bits, or floats from 0
-/// to 1, or to 255 if some are 2 or more; clamped. Gaussian splats have the colour of f_dc_0 to
-/// f_dc_2. Vertices with the properties opacity, scale_0 to scale_2 and rot_0 to rot_3 are splats,
-/// unless `splats_are_points`. See open_packed_ply() for compressed splats.
+/// diffuse_red ..., or r ...; integers up to the greatest value of 8 or 16 bits, or floats; see
+/// color_range() for the range of 16 bits and floats; clamped. Gaussian splats have the colour of
+/// f_dc_0 to f_dc_2. Vertices with the properties opacity, scale_0 to scale_2 and rot_0 to rot_3
+/// are splats, unless `splats_are_points`. See open_packed_ply() for compressed splats.
 ///
 /// Throws Error with the line (in a binary body with the byte): malformed headers and values,
 /// counts that need a longer file, truncation before the end of the vertices.
@@ -103,7 +104,8 @@ std::unique_ptr<VoxelSource> open_las_points(const std::filesystem::path& path,
 ///
 /// The colours are field `rgb` or `rgba` of 4 bytes: 0xAARRGGBB, also as the bits of a float. In
 /// text, a number with only digits is that integer; any other number is such a float, and NaN is
-/// black. Fields of other sizes are no colours.
+/// black. Fields of other sizes are no colours. Fields r, g and b are colours, in the range of
+/// color_range().
 ///
 /// Memory is bounded, also for compressed files, which hold one field of all points after another.
 /// Throws Error with the line or byte: malformed headers and values, counts that need a longer

@@ -47,22 +47,32 @@ class TextCells {
 
   bool next_any(std::string_view& cell) {
     skip_blanks();
+    if (rest_.starts_with('"') && next_quoted(cell)) return true;
+    if (rest_.empty() && !has_more_) return false;
+    std::size_t end = 0;
+    while (end < rest_.size() && !is_blank(rest_[end]) && !is_comma(rest_[end])) ++end;
+    take(cell, 0, end, end);
+    return true;
+  }
+
+  /// Takes the cell in quotes that begins here. Returns false, behind the quotes, if it has no end.
+  bool next_quoted(std::string_view& cell) {
     const std::size_t close = end_of_quotes();
     if (close != rest_.npos) {
-      cell = rest_.substr(1, close - 1);
-      rest_.remove_prefix(close + 1);
-    } else {
-      for (; rest_.starts_with('"'); skip_blanks()) rest_.remove_prefix(1);
-      if (rest_.empty() && !has_more_) return false;
-      std::size_t end = 0;
-      while (end < rest_.size() && !is_blank(rest_[end]) && !is_comma(rest_[end])) ++end;
-      cell = rest_.substr(0, end);
-      rest_.remove_prefix(end);
+      take(cell, 1, close - 1, close + 1);
+      return true;
     }
+    for (; rest_.starts_with('"'); skip_blanks()) rest_.remove_prefix(1);
+    return false;
+  }
+
+  /// Takes a cell of `size` characters from `first` on, and a comma behind `end`.
+  void take(std::string_view& cell, std::size_t first, std::size_t size, std::size_t end) {
+    cell = rest_.substr(first, size);
+    rest_.remove_prefix(end);
     skip_blanks();
     has_more_ = !rest_.empty() && is_comma(rest_[0]);
     if (has_more_) rest_.remove_prefix(1);
-    return true;
   }
 
   void skip_blanks() {
@@ -131,6 +141,7 @@ inline bool parse_cell(std::string_view field, double& value) {
 inline std::size_t comment_mark(std::string_view line) {
   const std::string_view body = trim(line);
   const auto blanks = static_cast<std::size_t>(body.data() - line.data());
+  if (body.empty() || is_decimal_digit(body[0])) return 0;
   if (body.starts_with("sep=") || body.starts_with("\"sep=")) return line.size();
   if (!body.starts_with('#') && !body.starts_with("//") && !body.starts_with('%')) return 0;
   return blanks + std::min(body.find_first_not_of("#/%"), body.size());

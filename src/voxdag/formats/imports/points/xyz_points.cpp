@@ -362,7 +362,8 @@ class XyzPoints : public VoxelSource {
 
   std::array<double, kPointValues> values_of(std::string_view line, std::uint64_t number) const {
     const bool is_cut_once = separator_ != 0 && line.find(separator_) != line.npos;
-    if (!is_cut_once && line.find_first_of(" \t;\"") != line.npos && has_inner_comma(trim(line)))
+    if (!is_cut_once && line.find(',') != line.npos && line.find_first_of(" \t;\"") != line.npos &&
+        has_inner_comma(trim(line)))
       fail_at_commas(number);
     std::array<double, kPointValues> values{};
     std::size_t found = 0, column = 0;
