@@ -14,6 +14,7 @@
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/io/resolved_output.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/file/vdag_name.hpp"
 
 namespace voxdag::cli {
 
@@ -80,6 +81,11 @@ void check_writable(const std::string& path) {
       access(path.c_str(), W_OK) == 0)
     return;
   AtomicFile{path};
+}
+
+void check_dag_writable(const std::string& path) {
+  check_vdag_name(path);
+  check_writable(path);
 }
 
 }  // namespace voxdag::cli

@@ -102,7 +102,7 @@ class EditRun {
 };
 
 void run(const ScriptArguments& arguments, Session& session) {
-  check_writable(arguments.edit.output);
+  check_dag_writable(arguments.edit.output);
   MemoryBudget memory = command_budget(arguments.edit.memory_limit);
   DagModel model(session.subject, {&memory, &session.progress});
   const bool is_compact = model.is_compact(), is_empty = model.view().is_empty();
