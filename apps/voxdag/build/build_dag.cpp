@@ -7,6 +7,7 @@
 
 #include "build/build_arguments.hpp"
 #include "cli/input_files.hpp"
+#include "cli/output_files.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/builders/attributes/cut_alpha.hpp"
 #include "voxdag/core/io/process_memory.hpp"
@@ -203,7 +204,7 @@ void build_dag_file(BuildArguments arguments, Session& session) {
   if (session.json) {
     fmt::print("{}", json_text(json_of(report, result.report, seconds)));
   } else if (!session.quiet) {
-    fmt::print("{}: {}\n{}{}", arguments.output, human_bytes(report.file_bytes),
+    fmt::print("{}: {}\n{}{}", with_output_name(arguments.output), human_bytes(report.file_bytes),
                arguments.transform_line(), table_of(report, seconds));
     if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
   }
