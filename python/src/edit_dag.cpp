@@ -207,14 +207,17 @@ axis: 'x', 'y' or 'z', which changes direction.)")
       .def(
           "rotate",
           [](const Dag& d, const std::string& axis, int turns) {
+            if (turns < -3 || turns > 3)
+              throw py::value_error("turns must be -3 to 3 quarter turns, not " +
+                                    std::to_string(turns));
             return reoriented(
-                d, rotated(axis_of(axis), turns % 4),
+                d, rotated(axis_of(axis), turns),
                 "rotated about " + axis + " by " + std::to_string(turns) + " quarter turns");
           },
           py::arg("axis"), py::arg("turns") = 1,
           R"(Rotates the voxels about the middle of the grid.
 
-axis: 'x', 'y' or 'z'. turns: quarter turns; one about z takes x to y.)")
+axis: 'x', 'y' or 'z'. turns: quarter turns, -3 to 3; one about z takes x to y.)")
       .def("coarsen", &coarser, py::arg("resolution"),
            R"(Joins voxels to larger ones, at the same place in the world.
 

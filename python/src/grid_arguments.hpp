@@ -20,17 +20,17 @@ inline std::optional<std::int64_t> checked(const std::optional<std::int64_t>& re
   return resolution;
 }
 
-/// Returns the request for a grid. Raises ValueError unless exactly one of resolution and pitch is
-/// given.
+/// Returns the request for a grid; without resolution and pitch, as the command line. Raises
+/// ValueError if both are given.
 inline GridRequest grid_request(const std::optional<std::int64_t>& resolution,
                                 const std::optional<double>& pitch,
                                 const std::optional<Bounds>& bounds) {
-  if (resolution.has_value() == pitch.has_value())
-    throw pybind11::value_error("give exactly one of resolution and pitch");
+  constexpr std::int64_t kDefaultResolution = 1024;
+  if (resolution && pitch) throw pybind11::value_error("give resolution or pitch, not both");
   if (pitch && !(*pitch > 0)) throw pybind11::value_error("pitch must be positive");
   GridRequest request;
   request.voxel_size = pitch;
-  request.resolution = checked(resolution);
+  request.resolution = pitch ? std::nullopt : checked(resolution.value_or(kDefaultResolution));
   if (bounds) {
     const auto& [lo, hi] = *bounds;
     request.bounds = {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};

@@ -88,7 +88,7 @@ place; len(a) counts the voxels.)");
           R"(Writes a .vdag file to `path`, with the bytes that `voxdag build` would write.
 
 compact: write the compact form, which takes about a quarter of the bytes. export() writes other
-formats, and pages.)")
+formats, and pages: their endings raise OSError here.)")
       .def_property_readonly("_nodes",
                              [](const py::object& self) {
                                const SvdagView view = self.cast<const Dag&>().view();

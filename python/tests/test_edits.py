@@ -98,7 +98,10 @@ def test_moves():
         dag.shift((5, -7, 0))
     assert as_set(dag.mirror("y").coords()) == as_set(coords * (1, -1, 1) + (0, 31, 0))
     assert as_set(dag.rotate("z").coords()) == as_set(coords[:, [1, 0, 2]] * (-1, 1, 1) + (31, 0, 0))
-    assert dag.rotate("z", -3) == dag.rotate("z") and dag.rotate("x", 4) == dag
+    assert dag.rotate("z", -3) == dag.rotate("z")
+    for turns in (4, -4, 90):
+        with pytest.raises(ValueError, match="turns must be -3 to 3"):
+            dag.rotate("z", turns)
     coarse = dag.coarsen(8)
     assert as_set(coarse.coords()) == as_set(coords // 4)
     assert coarse.voxel_size == 4 * dag.voxel_size and coarse.origin == dag.origin

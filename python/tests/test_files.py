@@ -51,8 +51,14 @@ def test_files(tmp_path):
         assert voxdag.open(tmp_path / "a.vdag") == dag
     with pytest.raises(OSError, match="nothing.vdag: cannot open: No such file"):
         voxdag.open(tmp_path / "nothing.vdag")
-    with pytest.raises(OSError, match="a.vdag: .*No such file"):
+    with pytest.raises(OSError, match="a.vdag: .*does not exist"):
         dag.save(tmp_path / "no" / "a.vdag")
+    for name in ("a.glb", "a.GLB", "a.npy", "a.html", "a.esvo"):
+        for compact in (False, True):
+            with pytest.raises(OSError, match=name + ": .*voxdag export"):
+                dag.save(tmp_path / name, compact=compact)
+        assert not (tmp_path / name).exists()
+    dag.save(tmp_path / "a.bin")
     (tmp_path / "bad.vdag").write_bytes(b"x" * 100)
     with pytest.raises(OSError, match="bad.vdag"):
         voxdag.open(tmp_path / "bad.vdag")
@@ -89,8 +95,12 @@ def test_load_takes_any_file(tmp_path):
     mesh.export(tmp_path / "cube.vox")
     assert voxdag.load(tmp_path / "cube.vox") == mesh
     assert voxdag.load(tmp_path / "cube.obj", pitch=0.25).voxel_size == 0.25
-    with pytest.raises(OSError, match="none.obj"):
-        voxdag.load(tmp_path / "none.obj")
+    for read in (voxdag.load, voxdag.build_mesh):
+        with pytest.raises(OSError, match="none.obj"):
+            read(tmp_path / "none.obj")
+    assert voxdag.build_mesh(tmp_path / "cube.obj").resolution == 1024
+    assert voxdag.from_points([[0, 0, 0], [1, 2, 3]]).resolution == 1024
+    assert voxdag.build(CUBE, CUBE_FACES).resolution == 1024
 
 
 def test_pickles():

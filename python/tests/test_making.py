@@ -159,7 +159,7 @@ def test_meshes_of_other_libraries():
 
 
 @pytest.mark.parametrize("call, reason", [
-    (lambda: voxdag.build(CUBE, CUBE_FACES), "exactly one of resolution and pitch"),
+    (lambda: voxdag.build(CUBE, CUBE_FACES, resolution=8, pitch=1), "resolution or pitch, not both"),
     (lambda: voxdag.build(CUBE, CUBE_FACES, resolution=2**20 + 1), "from 1 to 1048576"),
     (lambda: voxdag.build(CUBE, CUBE_FACES, resolution=-4), "from 1 to 1048576"),
     (lambda: voxdag.build(CUBE, CUBE_FACES, pitch=0), "pitch must be positive"),

@@ -47,7 +47,9 @@ def load(path, *, resolution=None, **options):
     imports.
     resolution: voxels along the longest side of meshes and points, by default 1024; points that
     voxdag exported, voxels and volumes have a grid in their file.
-    options: those of build_mesh() and import_file(), such as pitch, or colors=True for meshes.
+    options: those of build_mesh() and import_file(), such as pitch, or colors=True for meshes: without
+    it, the DAG of a mesh has no colours, as that of `voxdag build` without --color. Points and voxels
+    keep theirs.
     """
     name = _os.fspath(path).lower()
     for packed in (".gz", ".zst"):
@@ -59,7 +61,7 @@ def load(path, *, resolution=None, **options):
     is_sized = "resolution" in options or "pitch" in options
     if not name.endswith(_IMPORTED) and not _os.path.isdir(path):
         try:
-            return build_mesh(path, **options, **({} if is_sized else {"resolution": 1024}))
+            return build_mesh(path, **options)
         except OSError as error:
             if not (name.endswith(".ply") and "'face' element" in str(error)):
                 raise
@@ -93,7 +95,7 @@ def build(vertices, faces=None, *, resolution=None, pitch=None, bounds=None, sol
     """Builds the DAG of the voxels that triangles meet.
 
     vertices: (N, 3) float; faces: (M, 3) indices. Or one mesh of trimesh or Open3D.
-    resolution: voxels along the longest side, 1 to 2^20; or pitch: side of a voxel.
+    resolution: voxels along the longest side, 1 to 2^20, by default 1024; or pitch: side of a voxel.
     bounds: ((x0, y0, z0), (x1, y1, z1)), the box that the grid holds; default: that of the mesh.
     solid: also set the voxels inside: True or "parity" for closed meshes, "winding" for meshes with
     holes, "flood" for what the voxels enclose.

@@ -372,6 +372,16 @@ TEST_F(Edit, GridsThatDoNotAlignAreToldHowTheyWould) {
   const ProcessResult apart = run_voxdag({"diff", path("a.vdag"), path("own.vdag")});
   expect_failure(apart, 1, "voxdag build --grid-of " + path("a.vdag"));
   build("same.vdag", {"--grid-of", path("a.vdag")});
+  const auto warning_of = [](const std::string& by) {
+    return run_voxdag({"build", path("sponge.ply"), "--grid-of", path("a.vdag"), "--translate", by,
+                       "-o", path("moved.vdag")})
+        .err;
+  };
+  EXPECT_EQ(warning_of("0,0,0"), "");
+  const std::string part = warning_of("-0.5,0,0"), none = warning_of("-99,0,0");
+  EXPECT_NE(part.find("out of the grid of " + path("a.vdag")), part.npos) << part;
+  EXPECT_EQ(none.find("out of the grid"), none.npos) << none;
+  EXPECT_NE(none.find("no voxels"), none.npos) << none;
   EXPECT_NE(run_voxdag({"diff", path("a.vdag"), path("same.vdag")})
                 .out.find("only in " + path("a.vdag") + ": 0 voxels\nonly in " + path("same.vdag") +
                           ": 0 voxels\n"),

@@ -149,6 +149,18 @@ TEST_F(LiveEdit, EachOperationChangesItsVoxels) {
   edit("a.vdag", "grow,ball,8,8,8,30\nsmooth,ball,8,8,8,30\n");
 }
 
+TEST_F(LiveEdit, EditsThatChangeNothingAreReported) {
+  const auto says_so = [](const std::string& first, const std::string& second) {
+    const ProcessResult result =
+        run_voxdag({"edit", path("a.vdag"), "--do", first, "--do", second, "-o", path("o.vdag")});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.err.find("the edits changed no voxel") != result.err.npos;
+  };
+  EXPECT_TRUE(says_so("add,ball,8,8,8,1", "remove,ball,99,99,99,1"));
+  EXPECT_TRUE(says_so("remove,ball,8,8,8,1", "add,ball,8,8,8,1"));
+  EXPECT_FALSE(says_so("add,ball,8,8,8,1", "remove,ball,8,8,8,1"));
+}
+
 TEST_F(LiveEdit, OptionsStandardInputAndFormsGiveTheSameFile) {
   const std::string ball = "remove,ball,8,8,12,3", box = "add,box,2,3,4,7,20,6";
   edit("a.vdag", "# a script\r\n\r\n" + ball + "\r\nundo\r\nredo\r\n" + box + "\r\n");

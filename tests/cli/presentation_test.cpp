@@ -38,6 +38,7 @@ TEST_F(PresentationOfFiles, FollowTheFormatTheOptionOrTheShape) {
              "endloop\nendfacet\nendsolid\n");
   run({"build", path("a.obj"), "-r", "32", "-o", path("y.vdag")});
   EXPECT_EQ(info("y.vdag").at("up"), "y");
+  EXPECT_EQ(info("y.vdag").at("up_guessed"), true);
   EXPECT_FALSE(info("y.vdag").contains("unit"));
   run({"build", path("a.obj"), "-r", "32", "--up", "x:z", "--unit", "mm", "-o", path("x.vdag")});
   EXPECT_EQ(info("x.vdag").at("up"), "z");
@@ -47,6 +48,21 @@ TEST_F(PresentationOfFiles, FollowTheFormatTheOptionOrTheShape) {
   EXPECT_EQ(info("z.vdag").at("home").at("up"), Json::array({0, 0, 1}));
   EXPECT_NE(view_of("z.vdag").find("--up 0,0,1 "), std::string::npos);
   EXPECT_NE(view_of("y.vdag").find("--up 0,1,0 "), std::string::npos);
+  // A guess is never printed as if it were known, also not after an edit.
+  run({"combine", path("y.vdag"), path("y.vdag"), "--union", "-o", path("yy.vdag")});
+  run({"build", path("a.obj"), "-r", "32", "--up", "y:y", "-o", path("told.vdag")});
+  for (const char* name : {"y.vdag", "yy.vdag", "told.vdag", "x.vdag", "z.vdag"}) {
+    const bool is_guessed = *name == 'y';
+    EXPECT_EQ(info(name).contains("up_guessed"), is_guessed) << name;
+    const auto says = [&](const std::string& text) {
+      return text.find("guessed") != text.npos && text.find("--up sets it") != text.npos;
+    };
+    EXPECT_EQ(says(run({"info", path(name)})), is_guessed) << name;
+    EXPECT_EQ(says(view_of(name)), is_guessed) << name;
+  }
+  EXPECT_EQ(run({"render", path("y.vdag"), "-o", path("a.png"), "--size", "32x18", "--up", "0,1,0"})
+                .find("guessed"),
+            std::string::npos);
   // The bytes do not depend on the number of threads.
   run({"build", path("a.stl"), "-r", "32", "--threads", "1", "-o", path("one.vdag")});
   EXPECT_EQ(read_text(path("one.vdag")), read_text(path("z.vdag")));

@@ -84,7 +84,7 @@ TEST_F(SceneInputs, KeepWritesTheDagAndNothingElseIsLeft) {
 TEST_F(SceneInputs, ErrorsNameTheFileThatTheUserGave) {
   write_text(dir_ / "bad.obj", "v 0 0 zero\n");
   expect_failure(run_voxdag({"query", dir_ / "bad.obj", "--count"}), 1, "bad.obj");
-  const ProcessResult esvo = run_voxdag({"query", mesh_, "--count", "--memory", "1"});
+  const ProcessResult esvo = run_voxdag({"query", mesh_, "--count", "--memory", "1K"});
   EXPECT_EQ(esvo.err.find("/proc/"), esvo.err.npos) << esvo.err;
 }
 
@@ -101,6 +101,34 @@ TEST_F(SceneInputs, BuildAndImportHaveADefaultResolutionAndName) {
   }
   EXPECT_EQ(shell("$VOXDAG build mesh.obj -r 16 --as esvo").out.substr(0, 11), "mesh.esvo: ");
   EXPECT_EQ(shell("$VOXDAG build mesh.obj -r 16").status, 0) << "an older DAG is replaced";
+}
+
+TEST_F(SceneInputs, RenderHasADefaultNameThatReplacesNothing) {
+  ASSERT_EQ(run_voxdag({"build", mesh_, "-r", "32", "-o", dag_}).status, 0);
+  const std::string small = " --size 32x18 --ao 0";
+  EXPECT_EQ(shell("$VOXDAG render a.vdag" + small).out.substr(0, 7), "a.png: ");
+  const std::string picture = read_text(dir_ / "a.png");
+  EXPECT_EQ(picture.substr(1, 3), "PNG");
+  expect_failure(shell("$VOXDAG render a.vdag" + small), 2, "--output: is required: a.png exists");
+  EXPECT_EQ(shell("$VOXDAG render mesh.obj -r 32" + small).out.substr(0, 10), "mesh.png: ");
+  expect_failure(shell("$VOXDAG render a.vdag --path none.json"), 2, "--output: is required");
+  // Standard output has the same bytes, and the summary calls it so.
+  const ProcessResult piped = shell("$VOXDAG render a.vdag -o -" + small);
+  EXPECT_TRUE(piped.out == picture);
+  EXPECT_NE(piped.err.find("standard output: 32 x 18"), piped.err.npos) << piped.err;
+}
+
+TEST_F(SceneInputs, MessagesCallStandardOutputByItsName) {
+  ASSERT_EQ(run_voxdag({"build", mesh_, "-r", "32", "-o", dag_}).status, 0);
+  expect_failure(shell("$VOXDAG export a.vdag -o -"), 1,
+                 "standard output: --format EXT is needed: EXT is an extension of .spc.npy");
+  for (const std::string command :
+       {"build mesh.obj -r 16", "convert a.vdag", "export a.vdag --format glb"}) {
+    const ProcessResult result = shell("$VOXDAG " + command + " -o -");
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err.find("/proc/"), result.err.npos) << result.err;
+    EXPECT_NE(result.err.find("standard output: "), result.err.npos) << result.err;
+  }
 }
 
 TEST_F(SceneInputs, ADefaultNameNeverReplacesAnotherKindOfFile) {

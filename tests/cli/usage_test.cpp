@@ -16,6 +16,7 @@ const std::vector<std::string> kCommands = {
 TEST(Usage, VersionBeginsWithItsNumber) {
   const ProcessResult result = run_voxdag({"--version"});
   EXPECT_EQ(result.status, 0);
+  for (const char* word : {"version", "-v", "-V"}) EXPECT_EQ(run_voxdag({word}).out, result.out);
   EXPECT_TRUE(result.out.starts_with("voxdag " VOXDAG_VERSION "\n")) << result.out;
   for (const char* line : {"\nbuilt with: ", "\nvector instructions: "})
     EXPECT_NE(result.out.find(line), std::string::npos) << result.out;
@@ -90,6 +91,34 @@ TEST(Usage, UnknownArgumentsAreNamedInTheirOrderWithTheNearestOptions) {
   expect_failure(run_voxdag({"build", "a.obj", "--resolutoin", "64"}), 2,
                  "unknown argument: --resolutoin (did you mean --resolution?)");
   expect_failure(run_voxdag({"build", "--method"}), 2, "--method");
+}
+
+TEST(Usage, OptionsOfOtherProgramsLeadToThoseHere) {
+  expect_failure(run_voxdag({"render", "a.vdag", "--width", "64"}), 2,
+                 "--width (did you mean --size?)");
+  expect_failure(run_voxdag({"render", "a.vdag", "--turntable"}), 2,
+                 "--turntable (did you mean --path?)");
+  expect_failure(run_voxdag({"info", "a.vdag", "--width=3"}), 2,
+                 "unknown argument: --width (usage");
+}
+
+TEST(Usage, ALongOptionWithOneDashIsNotTakenForAShortOne) {
+  expect_failure(run_voxdag({"build", "none.obj", "-res", "256"}), 2,
+                 "unknown argument: -res (did you mean --resolution?)");
+  expect_failure(run_voxdag({"build", "none.obj", "-output", "a.vdag"}), 2,
+                 "unknown argument: -output (did you mean --output?)");
+  expect_failure(run_voxdag({"build", "none.obj", "-r256"}), 1, "none.obj");
+}
+
+TEST(Usage, ANumberOfBytesForMegabytesIsRefused) {
+  expect_failure(run_voxdag({"build", "none.obj", "--memory", "100"}), 2,
+                 "--memory: \"100\" is a number of bytes: give a unit, such as 100M");
+  expect_failure(run_voxdag({"build", "none.obj", "--memory", "1073741824"}), 1, "none.obj");
+}
+
+TEST(Usage, AMissingFolderIsNamed) {
+  expect_failure(run_voxdag({"build", "none.obj", "-o", "/none/at/all/x.vdag"}), 1,
+                 "/none/at/all/x.vdag: cannot write: the folder /none/at/all does not exist");
 }
 
 TEST(Usage, BritishAndAmericanSpellingsOfOptionsAreEqual) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "process.hpp"
 #include "support/temp_dir.hpp"
 
@@ -58,6 +60,39 @@ TEST_F(WrittenOutput, OtherEndingsAreBadUsageAndWriteNothing) {
     expect_failure(run_voxdag({"import", points_, "-o", dir_ / name}), 2, ".glb");
   }
   EXPECT_EQ(dir_.count(), before);
+}
+
+TEST_F(WrittenOutput, NoDagIsWrittenUnderTheNameOfAnotherFormat) {
+  ASSERT_EQ(run_voxdag({"build", mesh_, "-r", "32", "-o", dag_}).status, 0);
+  // The message lists what export writes.
+  std::istringstream words(run_voxdag({"build", mesh_, "-o", dir_ / "out.docx"}).err);
+  std::vector<std::string> endings = {".esvo", ".html", ".GLB"};
+  for (std::string word; words >> word;)
+    if (word.starts_with('.') && word != ".vdag," && word != ".png," && word != ".exr,")
+      endings.push_back(word.substr(0, word.find(',')));
+  EXPECT_GE(endings.size(), 23U);
+  for (const std::string& ending : endings) {
+    const std::string out = dir_ / ("out" + ending);
+    expect_failure(run_voxdag({"convert", dag_, "-o", out}), 1, "voxdag export");
+    EXPECT_FALSE(std::filesystem::exists(out)) << ending;
+  }
+  const std::string out = dir_ / "out.glb";
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{"coarsen", dag_, "--by", "1"},
+                                             {"crop", dag_, "--window", "0,0,0,8,8,8"},
+                                             {"edit", dag_, "--do", "add,ball,1,2,3,1"},
+                                             {"dilate", dag_, "--steps", "1"},
+                                             {"components", dag_, "--largest"},
+                                             {"combine", dag_, dag_, "--union"},
+                                             {"view", dag_, "--edit"}}) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"-o", out});
+    const ProcessResult result = run_voxdag(arguments);
+    expect_failure(result, 1, "voxdag export");
+    EXPECT_NE(result.err.find("out.glb"), result.err.npos) << result.err;
+  }
+  for (const std::string name : {"out.bin", "out", "out.VDAG", "out.vdag.bak"})
+    EXPECT_EQ(run_voxdag({"convert", dag_, "-o", dir_ / name}).status, 0) << name;
 }
 
 TEST_F(WrittenOutput, OptionsThatContradictTheEndingAreBadUsage) {

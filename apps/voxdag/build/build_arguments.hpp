@@ -72,6 +72,11 @@ inline Grid grid_of_build(const BuildArguments& arguments, const Mesh& mesh,
   return arguments.grid_of.empty() ? grid_for(mesh, request) : grid_of_file(arguments.grid_of);
 }
 
+/// Warns if the bounding box of the mesh reaches out of the grid of --grid-of, but meets it:
+/// warn_if_empty() reports meshes that do not.
+void warn_of_parts_outside(const BuildArguments& arguments, const Mesh& mesh, const Grid& grid,
+                           Session& session);
+
 /// Returns the settings that shape the voxels, for the metadata of the output.
 inline std::map<std::string, std::string> build_settings(const BuildArguments& arguments) {
   std::map<std::string, std::string> settings = settings_of(arguments.grid);

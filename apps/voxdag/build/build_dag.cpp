@@ -7,6 +7,7 @@
 
 #include "build/build_arguments.hpp"
 #include "cli/input_files.hpp"
+#include "cli/output_files.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/builders/attributes/cut_alpha.hpp"
 #include "voxdag/core/io/process_memory.hpp"
@@ -16,6 +17,7 @@
 #include "voxdag/file/report/human.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/mesh/has_colors.hpp"
+#include "voxdag/mesh/mesh_bounds.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
 #include "voxdag/stored/compact/compact_bytes.hpp"
 #include "voxdag/stored/compact/encode_svdag.hpp"
@@ -86,6 +88,25 @@ Svdag fill(const SvdagView& cover, const Mesh& mesh, const Grid& grid,
 
 }  // namespace
 
+void warn_of_parts_outside(const BuildArguments& arguments, const Mesh& mesh, const Grid& grid,
+                           Session& session) {
+  if (arguments.grid_of.empty() || mesh.triangles.empty()) return;
+  const Box3d of_mesh = referenced_bounds(mesh), of_grid = grid.bounds();
+  const double rounding = grid.voxel_size / 1000;
+  bool reaches_out = false, meets = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    reaches_out = reaches_out || of_mesh.lo[axis] < of_grid.lo[axis] - rounding ||
+                  of_mesh.hi[axis] > of_grid.hi[axis] + rounding;
+    meets = meets && of_mesh.hi[axis] >= of_grid.lo[axis] && of_mesh.lo[axis] <= of_grid.hi[axis];
+  }
+  if (reaches_out && meets)
+    print_warnings({fmt::format("{}: reaches from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, "
+                                "{:.6g}), out of the grid of {}: what lies outside is left out",
+                                session.subject, of_mesh.lo.x, of_mesh.lo.y, of_mesh.lo.z,
+                                of_mesh.hi.x, of_mesh.hi.y, of_mesh.hi.z, arguments.grid_of)},
+                   session);
+}
+
 void build_dag_file(BuildArguments arguments, Session& session) {
   check_writable(arguments.output);
   Stopwatch watch;
@@ -119,6 +140,7 @@ void build_dag_file(BuildArguments arguments, Session& session) {
   DagReport report;
   report.metadata.grid = grid_of_build(arguments, mesh, arguments.grid);
   warn_of_rounding(session.subject, mesh, report.metadata.grid.voxel_size, session);
+  warn_of_parts_outside(arguments, mesh, report.metadata.grid, session);
   arguments.attributes.check_levels(report.metadata.grid.levels);
   report.metadata.source = {names_of(arguments.meshes), mesh.vertices.size(),
                             mesh.triangles.size()};
@@ -204,7 +226,7 @@ void build_dag_file(BuildArguments arguments, Session& session) {
   if (session.json) {
     fmt::print("{}", json_text(json_of(report, result.report, seconds)));
   } else if (!session.quiet) {
-    fmt::print("{}: {}\n{}{}", arguments.output, human_bytes(report.file_bytes),
+    fmt::print("{}: {}\n{}{}", with_output_name(arguments.output), human_bytes(report.file_bytes),
                arguments.transform_line(), table_of(report, seconds));
     if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
   }

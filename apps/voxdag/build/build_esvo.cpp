@@ -120,6 +120,7 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   if (displaced && !grid.bounds) grid.bounds = displaced_bounds(*displaced, source.mesh);
   metadata.grid = grid_of_build(arguments, source.mesh, grid);
   warn_of_rounding(session.subject, source.mesh, metadata.grid.voxel_size, session);
+  warn_of_parts_outside(arguments, source.mesh, metadata.grid, session);
   esvo.bake.check_levels(metadata.grid.levels);
   metadata.source = {names_of(arguments.meshes), source.mesh.vertices.size(),
                      source.mesh.triangles.size()};

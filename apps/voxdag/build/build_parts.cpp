@@ -130,7 +130,7 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
   if (session.json) {
     fmt::print("{}", json_text(json_of(report, parts, process.count())));
   } else if (!session.quiet) {
-    fmt::print("{}: {}\n{}{}", arguments.output, human_bytes(report.file_bytes),
+    fmt::print("{}: {}\n{}{}", with_output_name(arguments.output), human_bytes(report.file_bytes),
                arguments.transform_line(), table_of(report, parts, process.count()));
     if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
   }

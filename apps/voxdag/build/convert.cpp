@@ -69,7 +69,7 @@ DagModel read_input(const ConvertArguments& arguments, DagReduction& reduction,
 }
 
 void convert(const ConvertArguments& arguments, Session& session) {
-  check_writable(arguments.output);
+  check_dag_writable(arguments.output);
   MemoryBudget memory = command_budget(arguments.memory_limit);
   DagReduction reduction;
   const DagModel file = read_input(arguments, reduction, memory, session);

@@ -4,10 +4,8 @@
 
 #include <filesystem>
 
-#include "cli/input_files.hpp"
+#include "cli/output_files.hpp"
 #include "cli/scratch_dag.hpp"
-#include "voxdag/core/io/resolved_output.hpp"
-#include "voxdag/core/io/unpacked_name.hpp"
 #include "voxdag/formats/exports/export_voxels.hpp"
 #include "voxdag/render/film/picture_pass.hpp"
 
@@ -20,27 +18,7 @@ bool is_page(const std::string& output) {
   return output.ends_with(".html") || output.ends_with('/');
 }
 
-bool is_pipe_or_device(const std::string& output) {
-  std::error_code unknown;
-  return resolve_output(output).descriptor >= 0 || fs::is_other(output, unknown);
-}
-
 }  // namespace
-
-std::string default_output(const std::string& argument, const std::string& file,
-                           const std::string& ending) {
-  std::error_code unknown;
-  const std::string& input = fs::exists(argument, unknown) ? argument : file;
-  fs::path name = fs::absolute(unpacked_name(input)).lexically_normal();
-  if (!name.has_filename()) name = name.parent_path();
-  if (input == "-" || is_pipe_or_device(input) || name.stem().empty())
-    throw UsageError("--output", "is required: the input has no name");
-  const std::string output = name.stem().string() + ending;
-  if (fs::exists(output, unknown) && !is_container(output))
-    throw UsageError("--output",
-                     fmt::format("is required: {} exists, and is no .vdag or .esvo file", output));
-  return output;
-}
 
 std::string maker_of(const std::string& output) {
   if (output.ends_with(".vdag") || output.ends_with(".esvo") || is_pipe_or_device(output))

@@ -11,12 +11,6 @@ namespace voxdag::cli {
 /// Voxels along the longest side of meshes and points if the command line does not say it.
 inline constexpr std::int64_t kDefaultResolution = 1024;
 
-/// Returns the output of a command line without -o: the name of the input with this ending, in the
-/// current folder. The input is the argument, or `file` if the argument is a pattern. Throws
-/// UsageError if the input has no name, or if another kind of file has the output's name.
-std::string default_output(const std::string& argument, const std::string& file,
-                           const std::string& ending);
-
 /// Returns the command that makes this output of a DAG: "export" or "render". Returns "" if the
 /// output is the built file: it ends in .vdag or .esvo, or is a pipe or a device. Throws UsageError
 /// for all other names.

@@ -132,11 +132,22 @@ std::string reason_of(const CLI::App& app, const CLI::ParseError& error) {
                      fmt::join(words, ", "));
 }
 
+/// Throws UsageError for "-res", which CLI11 would read as -r with the value "es", if at least
+/// three letters begin a long option. "-r256" and "-qh" stay.
+void refuse_single_dash(const std::string& word, const std::vector<std::string>& options) {
+  if (word.size() < 4 || word[0] != '-' || word[1] == '-') return;
+  for (const std::string& option : options)
+    if (option.starts_with("-" + word))
+      throw UsageError(fmt::format("unknown argument: {} (did you mean {}?)", word, option));
+}
+
 /// Turns "help build" into "build --help", and options in another spelling into those that the
-/// command has: "--colour".
+/// command has: "--colour". "version" and "-v" become "--version".
 std::vector<std::string> usual_arguments(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (words.empty()) return {"--help"};
+  if (words.size() == 1 && (words[0] == "version" || words[0] == "-v" || words[0] == "-V"))
+    return {"--version"};
   const std::vector<std::string> commands = command_names(app);
   const auto is_command = [&](const std::string& word) {
     return std::find(commands.begin(), commands.end(), word) != commands.end();
@@ -153,6 +164,7 @@ std::vector<std::string> usual_arguments(const CLI::App& app, int argc, char** a
   for (std::string& word : words) {
     if (word == "--") break;
     const std::string name = word.substr(0, word.find('='));
+    refuse_single_dash(name, options);
     if (!word.starts_with("--") || is_known(name)) continue;
     for (const std::string& other : other_spellings(name))
       if (is_known(other)) word.replace(0, name.size(), other);

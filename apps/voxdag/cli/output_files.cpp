@@ -5,8 +5,10 @@
 
 #include <map>
 
+#include "cli/input_files.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/resolved_output.hpp"
+#include "voxdag/core/io/unpacked_name.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -16,6 +18,12 @@ namespace fs = std::filesystem;
 bool is_device(const fs::path& path) {
   std::error_code unknown;
   return fs::is_other(path, unknown);
+}
+
+/// What standard_output() returned; empty: it was not called.
+std::string& standard_output_path() {
+  static std::string path;
+  return path;
 }
 
 void check_input(const OutputFile& output, const std::string& input) {
@@ -31,7 +39,45 @@ std::string standard_output() {
     if (copy >= 0) dup2(STDERR_FILENO, STDOUT_FILENO);
     return copy;
   }();
-  return output_path_of(output);
+  return standard_output_path() = output_path_of(output).string();
+}
+
+bool is_standard_output(const std::string& path) {
+  return !path.empty() && path == standard_output_path();
+}
+
+std::string with_output_name(std::string text) {
+  const std::string& path = standard_output_path();
+  constexpr std::string_view kName = "standard output";
+  for (std::size_t at = 0; !path.empty() && (at = text.find(path, at)) != text.npos;) {
+    const std::size_t end = at + path.size();
+    if (end < text.size() && text[end] >= '0' && text[end] <= '9')
+      at = end;  // the path of another descriptor
+    else
+      text.replace(at, path.size(), kName), at += kName.size();
+  }
+  return text;
+}
+
+bool is_pipe_or_device(const std::string& output) {
+  std::error_code unknown;
+  return resolve_output(output).descriptor >= 0 || fs::is_other(output, unknown);
+}
+
+std::string default_output(const std::string& argument, const std::string& file,
+                           const std::string& ending) {
+  std::error_code unknown;
+  const std::string& input = fs::exists(argument, unknown) ? argument : file;
+  fs::path name = fs::absolute(unpacked_name(input)).lexically_normal();
+  if (!name.has_filename()) name = name.parent_path();
+  if (input == "-" || is_pipe_or_device(input) || name.stem().empty())
+    throw UsageError("--output", "is required: the input has no name");
+  const std::string output = name.stem().string() + ending;
+  const bool is_picture = ending == ".png";  // It may be a texture of the input.
+  if (fs::exists(output, unknown) && (is_picture || !is_container(output)))
+    throw UsageError("--output", fmt::format("is required: {} exists{}", output,
+                                             is_picture ? "" : ", and is no .vdag or .esvo file"));
+  return output;
 }
 
 fs::path canonical_output(const std::string& path) {

@@ -26,8 +26,24 @@ void check_not_overwritten(const std::vector<OutputFile>& outputs,
 /// stderr, for example its summary.
 std::string standard_output();
 
+/// Returns whether `path` is the one that standard_output() returned.
+bool is_standard_output(const std::string& path);
+
+/// Returns the text with "standard output" in place of the path that standard_output() returned.
+std::string with_output_name(std::string text);
+
 /// Returns the canonical path of the file that receives output to `path`.
 std::filesystem::path canonical_output(const std::string& path);
+
+/// Returns the output of a command line without -o: the name of the input with this ending, in the
+/// current folder. The input is the argument, or `file` if the argument is a pattern. Throws
+/// UsageError if the input has no name, or if a file has
+/// the output's name, unless it is a .vdag or .esvo file and `ending` one of these.
+std::string default_output(const std::string& argument, const std::string& file,
+                           const std::string& ending);
+
+/// Returns whether output to `path` goes to a pipe or a device.
+bool is_pipe_or_device(const std::string& path);
 
 /// Returns whether both paths name the same existing file.
 bool are_same_file(const std::string& a, const std::string& b);

@@ -191,6 +191,10 @@ std::uint64_t parse_memory(const std::string& text) {
           fmt::format("\"{}\" has an unknown unit: the units are K, M, G and T", text));
     factor = std::exp2(10.0 * static_cast<double>(power + 1));
   }
+  constexpr double kFewBytes = 65536;  // less than any program takes
+  if (unit.empty() && text.find('B') == text.npos && value > 0 && value < kFewBytes)
+    throw std::invalid_argument(
+        fmt::format("\"{0}\" is a number of bytes: give a unit, such as {0}M", text));
   const double bytes = value * factor;
   if (!(bytes >= 1 && bytes < 0x1p63)) throw std::invalid_argument("must be at least one byte");
   return static_cast<std::uint64_t>(bytes);

@@ -9,11 +9,14 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <utility>
 
+#include "cli/output_files.hpp"
 #include "cli/parse.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/io/resolved_output.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/file/vdag_name.hpp"
 
 namespace voxdag::cli {
 
@@ -46,7 +49,7 @@ Option add_json_option(const Command& command, Session& session) {
 void print_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-  text = "voxdag: " + text + "\n";
+  text = "voxdag: " + with_output_name(std::move(text)) + "\n";
   std::fputs(text.c_str(), stderr);
 }
 
@@ -80,6 +83,11 @@ void check_writable(const std::string& path) {
       access(path.c_str(), W_OK) == 0)
     return;
   AtomicFile{path};
+}
+
+void check_dag_writable(const std::string& path) {
+  check_vdag_name(path);
+  check_writable(path);
 }
 
 }  // namespace voxdag::cli

@@ -74,5 +74,7 @@ std::string json_text(const nlohmann::ordered_json& json);
 
 /// Throws Error unless a file can be created at `path`. Call it before long work.
 void check_writable(const std::string& path);
+/// Throws Error also if the name is that of another format than .vdag.
+void check_dag_writable(const std::string& path);
 
 }  // namespace voxdag::cli

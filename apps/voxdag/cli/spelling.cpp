@@ -15,6 +15,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kBritishA
      {"metre", "meter"},
      {"neighbour", "neighbor"}}};
 
+/// Options of other programs, and the options here that do their work.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kOtherPrograms = {
+    {{"--width", "--size"}, {"--height", "--size"}, {"--turntable", "--path"}}};
+
 std::string_view without_dashes(std::string_view word) {
   return word.substr(std::min(word.find_first_not_of('-'), word.size()));
 }
@@ -40,6 +44,9 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_name(const std::string& word, const std::vector<std::string>& names) {
+  for (const auto& [other, own] : kOtherPrograms)
+    if (word == other && std::find(names.begin(), names.end(), own) != names.end())
+      return std::string(own);
   const std::string_view asked = without_dashes(word);
   std::string nearest;
   std::size_t fewest = asked.size() / 3 + 1;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "cli/output_files.hpp"
 #include "voxdag/file/report/human.hpp"
 
 namespace voxdag::cli {
@@ -39,7 +40,8 @@ void print_written(const WrittenFiles& written, Session& session) {
     return;
   }
   if (session.quiet) return;
-  std::string text = fmt::format("{}: {}", written.files.front(), human_bytes(bytes));
+  std::string text =
+      fmt::format("{}: {}", with_output_name(written.files.front()), human_bytes(bytes));
   for (const auto& [name, count] : written.counts)
     text += fmt::format(", {} {}", with_commas(count), name);
   if (!written.note.empty()) text += ", " + written.note;

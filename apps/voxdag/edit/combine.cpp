@@ -149,7 +149,7 @@ void warn_of_missing(const std::vector<PlacedModel>& files, const std::vector<st
 }
 
 void run_combine(const CombineArguments& arguments, Session& session) {
-  check_writable(arguments.edit.output);
+  check_dag_writable(arguments.edit.output);
   MemoryBudget memory = command_budget(arguments.edit.memory_limit);
   const AlignedFiles files(session.subject, arguments.second, {&memory, &session.progress});
   const SetOperation operation = chosen_operation(arguments);
@@ -204,7 +204,7 @@ void write_difference(const DiffArguments& arguments, Svdag differing, const Ali
 }
 
 void run_diff(const DiffArguments& arguments, Session& session) {
-  if (!arguments.edit.output.empty()) check_writable(arguments.edit.output);
+  if (!arguments.edit.output.empty()) check_dag_writable(arguments.edit.output);
   MemoryBudget memory = command_budget(arguments.edit.memory_limit);
   const AlignedFiles files(session.subject, arguments.second, {&memory, &session.progress});
   const auto count = [&](SetOperation operation) {

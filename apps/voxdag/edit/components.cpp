@@ -53,7 +53,7 @@ void print_sizes(const std::string& path, const std::vector<ComponentSizes>& siz
 
 void run(const ComponentsArguments& arguments, Session& session) {
   const EditArguments& edit = arguments.edit;
-  if (!edit.output.empty()) check_writable(edit.output);
+  if (!edit.output.empty()) check_dag_writable(edit.output);
   MemoryBudget memory = command_budget(edit.memory_limit);
   const DagModel file(session.subject, {&memory, &session.progress});
   std::optional<Components> components(std::in_place, file.view(), arguments.neighbours,

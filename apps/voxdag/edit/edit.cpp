@@ -42,7 +42,8 @@ class EditRun {
         dag_(ColoredDagView{model.view(), arguments.edit.drop_attributes ? DagAttributesView{}
                                                                          : model.attributes()},
              {.history = arguments.history, .starts_empty = starts_empty}, work_),
-        drops_attributes_(arguments.edit.drop_attributes) {}
+        drops_attributes_(arguments.edit.drop_attributes),
+        first_root_(dag_.snapshot().view().root) {}
 
   /// Applies a line of CSV or JSON.
   void apply(std::string_view line) {
@@ -82,6 +83,10 @@ class EditRun {
   }
 
   std::uint64_t count() const { return count_; }
+  /// Returns whether the voxels are those before all edits, and no edit wrote values.
+  bool changed_nothing() const {
+    return dag_.snapshot().view().root == first_root_ && dag_.values().bytes() == 0;
+  }
   const EditableDag& dag() const { return dag_; }
   /// Returns the DAG as edited, with its attributes.
   DagModel model() const {
@@ -98,11 +103,12 @@ class EditRun {
   StampFiles stamps_;
   EditableDag dag_;
   bool drops_attributes_;
+  std::uint32_t first_root_;
   std::uint64_t count_ = 0;
 };
 
 void run(const ScriptArguments& arguments, Session& session) {
-  check_writable(arguments.edit.output);
+  check_dag_writable(arguments.edit.output);
   MemoryBudget memory = command_budget(arguments.edit.memory_limit);
   DagModel model(session.subject, {&memory, &session.progress});
   const bool is_compact = model.is_compact(), is_empty = model.view().is_empty();
@@ -121,6 +127,8 @@ void run(const ScriptArguments& arguments, Session& session) {
                    {"new_nodes", run.dag().nodes().added_nodes()},
                    {"new_bytes", run.dag().nodes().added_bytes() + run.dag().values().bytes()},
                    {"undo_depth", run.dag().undo_count()}});
+  if (run.changed_nothing())
+    print_warnings({session.subject + ": the edits changed no voxel"}, session);
   const bool compact = arguments.edit.compact || (!arguments.edit.plain && is_compact);
   write_edited(arguments.edit, run.model(), compact, memory, session, counts);
 }

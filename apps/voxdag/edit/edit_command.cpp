@@ -20,7 +20,7 @@ void add_edit(const Command& command, Session& session, const Edit& edit,
   command.when_parsed([=, &session] {
     check_distinct({{"--output", arguments->output}}, session);
     session.work = [=, &session] {
-      check_writable(arguments->output);
+      check_dag_writable(arguments->output);
       MemoryBudget memory = command_budget(arguments->memory_limit);
       const Work work{&memory, &session.progress};
       VdagContainer opened(session.subject, &memory);

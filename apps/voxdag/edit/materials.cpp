@@ -66,7 +66,7 @@ void print_materials(const DagModel& file, const std::vector<MaterialVoxels>& vo
 
 void run(const MaterialsArguments& arguments, Session& session) {
   const EditArguments& edit = arguments.edit;
-  if (!edit.output.empty()) check_writable(edit.output);
+  if (!edit.output.empty()) check_dag_writable(edit.output);
   MemoryBudget memory = command_budget(edit.memory_limit);
   const Work work{&memory, &session.progress};
   const DagModel file(session.subject, work);

@@ -57,6 +57,9 @@ struct ExportArguments {
 /// Throws Error, before the file is read, if no output has this extension.
 void check_extension(const ExportArguments& arguments) {
   const std::string name = arguments.name();
+  if (arguments.content.format.empty() && is_standard_output(arguments.output))
+    throw Error(arguments.output, "",
+                "--format EXT is needed: EXT is an extension of " + export_extensions());
   if (!can_export_to(name))
     throw Error(arguments.output, "",
                 fmt::format("cannot export to '{}': the extension must be {}, or .html; a folder "

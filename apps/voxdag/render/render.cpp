@@ -76,7 +76,8 @@ void render_loaded(const RenderArguments& arguments, Session& session) {
     write_whole_file(arguments.write_camera, camera_json(image.view, image.width, image.height));
   session.bar.clear();
   if (!session.quiet)
-    print_picture_summary(arguments.output, image, seconds, device_name(device_scene));
+    print_picture_summary(arguments.output, image, seconds, device_name(device_scene),
+                          is_up_guessed(options.view, file.metadata().presentation));
 }
 
 void render(RenderArguments& arguments, Session& session) {

@@ -58,7 +58,8 @@ std::vector<OutputFile> check_outputs(const RenderArguments& arguments, const Se
       check_film(arguments);
       continue;
     }
-    if (!is_picture_path(output.path))
+    const bool is_png_anyway = output.option == "--output" && is_standard_output(output.path);
+    if (!is_picture_path(output.path) && !is_png_anyway)
       throw UsageError(output.option,
                        fmt::format("\"{}\" does not end in .png or .exr{}", output.path,
                                    output.option == "--output" ? ", or .mp4 or .webm" : ""));
@@ -92,6 +93,10 @@ void check_render_arguments(RenderArguments& arguments, Session& session) {
   note_environment_file(arguments.environment, session);
   if (arguments.mesh.primary == "mesh" && arguments.mesh.file.empty())
     throw UsageError("--primary", "\"mesh\" needs --mesh");
+  if (arguments.output.empty() && !arguments.path.file.empty())
+    throw UsageError("--output", "is required with --path");
+  if (arguments.output.empty())
+    arguments.output = default_output(session.subject, session.subject, ".png");
   arguments.mesh.access.outputs = check_outputs(arguments, session);
   check_view(arguments.options.view);
   constexpr std::size_t kMaxLights = RenderSetup::kMaxLights - 1;  // without the sun

@@ -341,11 +341,11 @@ void add_render_options(const Command& command, Session& session, RenderArgument
   options.ground = true;
   arguments.input.with_colors = true;
   add_scene_input(command, arguments.input, session, "The .vdag or .esvo file");
-  command
-      .text("-o,--output", arguments.output, "OUT",
-            "The picture to write: .png, or .exr for linear light; with --path, a film: .mp4 or "
-            ".webm")
-      .required();
+  command.text(
+      "-o,--output", arguments.output, "OUT",
+      "The picture to write: .png, or .exr for linear light; with --path, a film: .mp4 or .webm. "
+      "-: a PNG file on standard output (default: the name of FILE with .png, in the current "
+      "folder; it replaces no file)");
   command.parsed("--size", arguments.size, parse_image_size, "WxH",
                  "Width and height in pixels, 1 to 32768 each (default: 1920x1080)");
   Winners& winners = arguments.view.winners;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "cli/job.hpp"
+#include "cli/output_files.hpp"
 #include "cli/stopwatch.hpp"
 #include "render/picture_summary.hpp"
 #include "render/render_film.hpp"
@@ -72,16 +73,18 @@ void render_streamed_picture(const RenderArguments& arguments, Streamed& streame
   Stopwatch watch;
   double first_seconds = 0;
   const auto on_pass = [&](const RenderedImage& image) {
-    write(image);
+    if (!is_standard_output(arguments.output)) write(image);
     if (first_seconds == 0) first_seconds = watch.since_start();
   };
-  const RenderedImage image =
-      streamed.render(streamed_options(arguments, streamed.blocks), on_pass, &session.progress);
+  const RenderOptions options = streamed_options(arguments, streamed.blocks);
+  const RenderedImage image = streamed.render(options, on_pass, &session.progress);
   const double seconds = watch.since_start();
   write(image);
   session.bar.clear();
   if (session.quiet) return;
-  print_picture_summary(arguments.output, image, seconds, device_name(streamed.on_device));
+  print_picture_summary(
+      arguments.output, image, seconds, device_name(streamed.on_device),
+      is_up_guessed(options.view, streamed.blocks.stream().metadata().presentation));
   fmt::print("  first picture after {}\n",
              human_seconds(first_seconds > 0 ? first_seconds : seconds));
 }

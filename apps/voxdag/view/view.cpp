@@ -13,6 +13,7 @@
 #include "viewer/edit/save_edited.hpp"
 #include "viewer/site/single_page.hpp"
 #include "voxdag/file/vdag_container.hpp"
+#include "voxdag/file/vdag_name.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -122,6 +123,7 @@ void add_view_command(const Command& program, Session& session) {
   command.when_parsed([arguments, &session] {
     note_page_view_files(arguments->page_view, session);
     session.work = [arguments, &session] {
+      check_vdag_name(arguments->output);
       require_page_server();
       if (session.subject.empty()) {
         if (arguments->edits) throw UsageError("--edit", "needs a FILE");

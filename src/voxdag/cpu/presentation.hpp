@@ -6,8 +6,9 @@
 namespace voxdag {
 
 /// Returns the presentation with home_view() of the voxels. If its up axis is not known, detects
-/// it. Takes about ten milliseconds.
+/// it and notes that it is guessed. Takes about ten milliseconds.
 inline Presentation with_home(Presentation presentation, const VoxelSet& voxels, const Grid& grid) {
+  presentation.is_up_guessed |= !presentation.up;
   presentation.home = home_view(voxels, grid, presentation.up_vector());
   const Vec3d up = presentation.home->up;
   presentation.up = up.x != 0 ? 'x' : up.y != 0 ? 'y' : 'z';
@@ -18,6 +19,12 @@ inline Presentation with_home(Presentation presentation, const VoxelSet& voxels,
 inline void show_as(const Presentation& presentation, ViewRequest& request) {
   request.scene_up = presentation.up_vector();
   request.home = presentation.home;
+}
+
+/// Returns whether the up vector of such a view was guessed: the request has none, and the scene's
+/// input does not tell it.
+inline bool is_up_guessed(const ViewRequest& request, const Presentation& presentation) {
+  return !request.up && (!presentation.up || presentation.is_up_guessed);
 }
 
 }  // namespace voxdag

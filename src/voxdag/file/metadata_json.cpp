@@ -58,19 +58,23 @@ HomeView read_home(const MetadataField& field) {
   return view;
 }
 
+bool read_flag(const MetadataField& field) {
+  if (!field.value.is_boolean()) field.fail("is neither true nor false");
+  return field.value.get<bool>();
+}
+
 Presentation read_presentation(const MetadataField& root) {
   Presentation presentation;
   if (root.value.contains("up")) {
     const std::string up = root.at("up").text();
     if (up != "x" && up != "y" && up != "z") root.at("up").fail("is none of x, y and z");
     presentation.up = up[0];
+    if (root.value.contains("up_guessed"))
+      presentation.is_up_guessed = read_flag(root.at("up_guessed"));
   }
   if (root.value.contains("unit")) presentation.unit = root.at("unit").text();
   if (root.value.contains("home")) presentation.home = read_home(root.at("home"));
-  if (root.value.contains("cubes")) {
-    if (!root.at("cubes").value.is_boolean()) root.at("cubes").fail("is neither true nor false");
-    presentation.cubes = root.at("cubes").value.get<bool>();
-  }
+  if (root.value.contains("cubes")) presentation.cubes = read_flag(root.at("cubes"));
   return presentation;
 }
 
@@ -116,6 +120,7 @@ void finish_metadata_json(MetadataJson& json, const SceneMetadata& metadata) {
 
 void add_presentation(MetadataJson& json, const Presentation& presentation) {
   if (presentation.up) json["up"] = std::string(1, *presentation.up);
+  if (presentation.is_up_guessed) json["up_guessed"] = true;
   if (!presentation.unit.empty()) json["unit"] = presentation.unit;
   if (const auto& home = presentation.home) {
     json["home"] = {{"eye", point_json(home->eye)},

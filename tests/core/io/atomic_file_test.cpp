@@ -338,15 +338,16 @@ TEST(AtomicFile, AFileThatGrowsPastTheLimitIsAnErrorAndIsRemoved) {
 TEST(AtomicFile, AMissingDirectoryIsReportedAtOnce) {
   const TempDir dir;
   EXPECT_EQ(error_of([&] { AtomicFile file(dir / "none/out"); }),
-            (dir / "none/out").string() + ": byte 0: cannot write: No such file or directory");
+            (dir / "none/out").string() + ": cannot write: the folder " + (dir / "none").string() +
+                " does not exist");
 }
 
 TEST(AtomicFile, ADirectoryIsNotAFile) {
   const TempDir dir;
   EXPECT_EQ(error_of([&] { AtomicFile file(dir.path()); }),
-            dir.path().string() + ": byte 0: cannot write: Is a directory");
+            dir.path().string() + ": cannot write: Is a directory");
   EXPECT_EQ(error_of([&] { AtomicFile file(dir.path() / ""); }),
-            (dir.path() / "").string() + ": byte 0: cannot write: Is a directory");
+            (dir.path() / "").string() + ": cannot write: Is a directory");
 }
 
 TEST(AtomicFile, ADirectoryWithoutPermissionIsAnError) {
@@ -354,7 +355,7 @@ TEST(AtomicFile, ADirectoryWithoutPermissionIsAnError) {
   const TempDir dir;
   chmod(dir.path().c_str(), 0500);
   EXPECT_EQ(error_of([&] { AtomicFile file(dir / "out"); }),
-            (dir / "out").string() + ": byte 0: cannot write: Permission denied");
+            (dir / "out").string() + ": cannot write: Permission denied");
 }
 
 TEST(AtomicFile, ADeviceIsWrittenDirectly) {

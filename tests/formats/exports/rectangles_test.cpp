@@ -112,5 +112,26 @@ TEST(Rectangles, CornersAreCounterClockwiseFromOutside) {
   }
 }
 
+/// Without polls, the search for the bounds of a large scene could not be cancelled.
+TEST(Rectangles, TheSearchForTheBoundsPolls) {
+  Svdag dag;  // All voxels of 256³.
+  dag.levels = 8;
+  dag.leaf_blocks = {~std::uint64_t{0}};
+  dag.level_begin.fill(9 * 6);
+  for (std::uint32_t level = 0; level < 6; ++level) {
+    dag.level_begin[level] = 9 * level;
+    dag.nodes.push_back(0xFF);
+    dag.nodes.insert(dag.nodes.end(), 8, level == 5 ? 0 : 9 * (level + 1));
+  }
+  int calls = 0;
+  EXPECT_THROW(for_each_rectangle(
+                   dag.view(), whole_grid(8), nullptr, true,
+                   [&](double) {
+                     if (++calls == 3) throw Cancelled();
+                   },
+                   [](const FaceRectangle&) { FAIL() << "a rectangle before the third poll"; }),
+               Cancelled);
+}
+
 }  // namespace
 }  // namespace voxdag

@@ -34,7 +34,7 @@ void write_whole_file(const std::filesystem::path& path, std::string_view bytes)
 AtomicFile::AtomicFile(const fs::path& path, std::size_t buffer_bytes)
     : path_(path), target_(path), buffer_bytes_(buffer_bytes) {
   const ResolvedOutput output = resolve_output(path);
-  if (output.error != 0) fail(0, output.error);
+  if (output.error != 0) fail_to_open(output.error);
   target_ = output.file;
   if (output.descriptor >= 0) {
     share(output.descriptor);
@@ -42,15 +42,15 @@ AtomicFile::AtomicFile(const fs::path& path, std::size_t buffer_bytes)
   }
   struct stat existing {};
   const bool exists = stat(path.c_str(), &existing) == 0;
-  if (!exists && errno == ENAMETOOLONG) fail(0, errno);
-  if (exists && S_ISDIR(existing.st_mode)) fail(0, EISDIR);
+  if (!exists && errno == ENAMETOOLONG) fail_to_open(errno);
+  if (exists && S_ISDIR(existing.st_mode)) fail_to_open(EISDIR);
   if (exists && !S_ISREG(existing.st_mode)) {
     descriptor_ = open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor_ < 0) fail(0, errno);
+    if (descriptor_ < 0) fail_to_open(errno);
     return;
   }
-  if (path.filename().empty()) fail(0, ENOENT);
-  if (exists && access(target_.c_str(), W_OK) != 0) fail(0, errno);
+  if (path.filename().empty()) fail_to_open(ENOENT);
+  if (exists && access(target_.c_str(), W_OK) != 0) fail_to_open(errno);
 
   remove_leftovers(target_);
   descriptor_ = open_nameless_file(target_.parent_path());
@@ -132,12 +132,12 @@ void AtomicFile::commit() {
 /// Writes through a descriptor that is open already, from its current position.
 void AtomicFile::share(int descriptor) {
   const int flags = fcntl(descriptor, F_GETFL);
-  if (flags < 0) fail(0, errno);
+  if (flags < 0) fail_to_open(errno);
   // A descriptor that this program opened itself is not an output that the user named.
   const bool is_own = (fcntl(descriptor, F_GETFD) & FD_CLOEXEC) != 0;
-  if (is_own || (flags & O_ACCMODE) == O_RDONLY) fail(0, EBADF);
+  if (is_own || (flags & O_ACCMODE) == O_RDONLY) fail_to_open(EBADF);
   descriptor_ = duplicate(descriptor).release();
-  if (descriptor_ < 0) fail(0, errno);
+  if (descriptor_ < 0) fail_to_open(errno);
   is_appended_ = (flags & O_APPEND) != 0;
   const off_t start = lseek(descriptor_, 0, SEEK_CUR);
   start_ = start < 0 ? 0 : start;
@@ -148,7 +148,7 @@ void AtomicFile::create_named() {
     temporary_ = temporary_name(target_);
     descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (descriptor_ < 0 && errno == EEXIST);
-  if (descriptor_ < 0) fail(0, errno);
+  if (descriptor_ < 0) fail_to_open(errno);
   noted_ = note_unfinished(temporary_);
   lock_temporary(descriptor_);
 }
@@ -201,6 +201,16 @@ void AtomicFile::discard() noexcept {
   if (!temporary_.empty() && !is_nameless_) unlink(temporary_.c_str());
   forget_unfinished(std::exchange(noted_, nullptr));
   temporary_.clear();
+}
+
+void AtomicFile::fail_to_open(int error) const {
+  const fs::path folder = target_.parent_path();
+  std::error_code unknown;
+  const bool has_folder = folder.empty() || fs::exists(folder, unknown) || unknown;
+  throw Error(path_.string(), "",
+              "cannot write: " + (error == ENOENT && !has_folder
+                                      ? "the folder " + folder.string() + " does not exist"
+                                      : std::system_category().message(error)));
 }
 
 void AtomicFile::fail(std::uint64_t at, int error) const {

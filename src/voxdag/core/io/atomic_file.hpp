@@ -29,9 +29,10 @@ namespace voxdag {
 /// Data is not forced to the disk (no fsync). After a power cut the file may be damaged; formats
 /// with checksums detect that.
 ///
-/// Every failure throws Error(path, "byte N", the system's reason). To get the error instead of a
-/// signal, a process that may run under a file size limit must ignore SIGXFSZ, and a process that
-/// writes to pipes must ignore SIGPIPE. Not thread-safe.
+/// Every failure throws Error: a failed write with the place "byte N" and the system's reason, a
+/// file that cannot be created without a place. To get the error instead of a signal, a process
+/// that may run under a file size limit must ignore SIGXFSZ, and a process that writes to pipes
+/// must ignore SIGPIPE. Not thread-safe.
 class AtomicFile {
  public:
   static constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
@@ -70,6 +71,7 @@ class AtomicFile {
   void take_name();
   void copy_to_named();
   void discard() noexcept;
+  [[noreturn]] void fail_to_open(int error) const;
   [[noreturn]] void fail(std::uint64_t at, int error) const;
 
   std::filesystem::path path_;       ///< The caller's path; errors name it.

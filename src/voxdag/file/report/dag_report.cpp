@@ -217,7 +217,9 @@ std::string placement_table(const SceneMetadata& metadata) {
   const VdagSource& source = metadata.source;
   const Presentation& presentation = metadata.presentation;
   std::string view;
-  if (presentation.up) view = fmt::format("  {:<14}{}", "up", *presentation.up);
+  if (presentation.up)
+    view = fmt::format("  {:<14}{}{}", "up", *presentation.up,
+                       presentation.is_up_guessed ? " (guessed; --up sets it)" : "");
   if (!presentation.unit.empty()) view += ", in " + printable(presentation.unit);
   if (presentation.up && presentation.home)
     view += fmt::format(", home at ({:.6g}, {:.6g}, {:.6g})", presentation.home->eye.x,

@@ -117,10 +117,13 @@ void merge_plane(Merger& merger, std::int32_t k, const BitPlane& here, const Bit
 }
 
 /// Returns the half-open box of the leaf blocks with voxels in a window, cut to the window; an
-/// empty one if there are none.
-Box3i bounds_in(const VoxelSet& voxels, const Box3i& window) {
+/// empty one if there are none. Calls poll() from time to time.
+Box3i bounds_in(const VoxelSet& voxels, const Box3i& window, const std::function<void()>& poll) {
+  constexpr std::uint64_t kBlocksPerPoll = 1 << 16;
+  std::uint64_t blocks = 0;
   Box3i bounds{window.hi, window.lo};
   voxels.for_each_leaf_block(window, [&](Vec3i origin, std::uint64_t) {
+    if (++blocks % kBlocksPerPoll == 0) poll();
     bounds.lo = min(bounds.lo, max(origin, window.lo));
     bounds.hi = max(bounds.hi, min(origin + Vec3i{4, 4, 4}, window.hi));
   });
@@ -145,7 +148,9 @@ void for_each_rectangle(const VoxelSet& voxels, const Box3i& whole, LookReader* 
                         const std::function<void(double)>& progress,
                         const std::function<void(const FaceRectangle&)>& fn) {
   // The sweep takes time for each plane, also for those without voxels.
-  const Box3i window = bounds_in(voxels, whole);
+  const Box3i window = bounds_in(voxels, whole, [&] {
+    if (progress) progress(0);
+  });
   if (window.hi.x <= window.lo.x) return;
   for (int axis = 0; axis < 3; ++axis) {
     const PlaneAxes axes{axis, (axis + 2) % 3, (axis + 1) % 3};
