@@ -41,11 +41,14 @@ TEST(VdagMetadata, IsTheJsonOfTheSpecification) {
 
 TEST(VdagMetadata, UpUnitAndHomeAreOptionalKeys) {
   VdagMetadata metadata = example();
-  metadata.presentation = {'z', "mm", HomeView{{{1, 2, 3}, {0.5, 0, 0}, {0, 0, 1}, 35}, {}}};
+  metadata.presentation = {'z', false, "mm", HomeView{{{1, 2, 3}, {0.5, 0, 0}, {0, 0, 1}, 35}, {}}};
   const std::string json = vdag_metadata_json(metadata);
   EXPECT_TRUE(json.ends_with(R"("up":"z","unit":"mm","home":{"eye":[1.0,2.0,3.0],)"
                              R"("target":[0.5,0.0,0.0],"up":[0.0,0.0,1.0],"fov":35.0}})"));
   EXPECT_EQ(parse_vdag_metadata(json), metadata);
+  VdagMetadata guessed = metadata;
+  guessed.presentation.is_up_guessed = true;
+  EXPECT_EQ(parse_vdag_metadata(vdag_metadata_json(guessed)), guessed);
   const auto error_with = [&](const std::string& from, const std::string& to) {
     std::string changed = json;
     return metadata_error_of(changed.replace(changed.find(from), from.size(), to));
