@@ -58,8 +58,9 @@ std::vector<std::int64_t> whole_values_of(const pybind11::array& given, const ch
 std::vector<Vec3i> voxels_of(const pybind11::array& given, const char* name);
 
 /// Returns sRGB colours of shape (N, 3) in 8 bits. uint8 stays; uint16 is scaled from 0 to 65535,
-/// or with a warning stays if no value exceeds 255; real numbers are scaled from 0 to 1; other integers must be 0 to 255. Raises TypeError for other
-/// types, and ValueError for other values and shapes.
+/// or with a warning stays if no value exceeds 255; real numbers are scaled from 0 to 1; other
+/// integers must be 0 to 255. Raises TypeError for other types, and ValueError for other values and
+/// shapes.
 std::vector<Vec3<std::uint8_t>> colors_of(const pybind11::array& given);
 
 /// Returns an array of shape (N, 3).
