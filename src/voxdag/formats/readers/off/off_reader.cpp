@@ -73,7 +73,11 @@ class OffReader {
   bool find_line() {
     while (!rest_.empty()) {
       row_ = next_line(rest_, line_end_);
-      row_ = trim(row_.substr(0, row_.find('#')));
+      const char* const last = row_.data() + row_.size();
+      std::size_t end = row_.find('#');
+      while (end != row_.npos && find_windows_nan_end(row_.data(), row_.data() + end, last))
+        end = row_.find('#', end + 1);
+      row_ = trim(row_.substr(0, end));
       if (!row_.empty()) return true;
     }
     return false;

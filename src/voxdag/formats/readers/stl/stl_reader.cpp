@@ -311,13 +311,13 @@ MeshWithAppearance read_stl(const MeshSource& source, ReadParts parts) {
   if (source.bytes.empty()) throw source.error("the file is empty");
   const bool has_appearance = parts == ReadParts::kMeshAndAppearance;
   MeshWithAppearance read;
-  const std::string_view head = without_byte_order_mark(source.bytes).substr(0, 512);
+  std::string_view text = source.bytes;
+  while (text.ends_with('\0') || text.ends_with('\x1A')) text.remove_suffix(1);  // DOS ends.
+  const std::string_view head = without_byte_order_mark(text).substr(0, 512);
   const std::string_view word = StlTokens(head).next();
   const bool starts_as_text =
       (same_word(word, "solid") || same_word(word, "facet")) && head.find('\0') == head.npos;
   if (starts_as_text && !is_exact_binary_stl(source.bytes)) {
-    std::string_view text = source.bytes;
-    while (text.ends_with('\0') || text.ends_with('\x1A')) text.remove_suffix(1);  // DOS ends.
     const std::vector<std::string_view> texts = split_facets(text, kChunkBytes / 2);
     std::vector<std::size_t> irregular(texts.size());
     const auto visit = [&](std::size_t i, const auto& body) {
