@@ -21,10 +21,12 @@ class PresentationOfFiles : public testing::Test {
   Json info(const std::string& name) const {
     return Json::parse(run({"info", path(name), "--json"}));
   }
+  std::string summary_of(const std::string& name) const {
+    return run({"render", path(name), "-o", path("a.png"), "--size", "32x18", "--ao", "0"});
+  }
   /// Returns the options of the view that `render` chooses.
   std::string view_of(const std::string& name) const {
-    const std::string out =
-        run({"render", path(name), "-o", path("a.png"), "--size", "32x18", "--ao", "0"});
+    const std::string out = summary_of(name);
     return out.substr(out.find("--eye"));
   }
   TempDir dir_;
@@ -58,7 +60,7 @@ TEST_F(PresentationOfFiles, FollowTheFormatTheOptionOrTheShape) {
       return text.find("guessed") != text.npos && text.find("--up sets it") != text.npos;
     };
     EXPECT_EQ(says(run({"info", path(name)})), is_guessed) << name;
-    EXPECT_EQ(says(view_of(name)), is_guessed) << name;
+    EXPECT_EQ(says(summary_of(name)), is_guessed) << name;
   }
   EXPECT_EQ(run({"render", path("y.vdag"), "-o", path("a.png"), "--size", "32x18", "--up", "0,1,0"})
                 .find("guessed"),

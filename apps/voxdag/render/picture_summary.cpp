@@ -16,12 +16,12 @@ void print_picture_summary(const std::string& file, const RenderedImage& image, 
              image.height, human_seconds(seconds),
              human_count(static_cast<double>(image.rays) / seconds), device);
   const View& view = image.view;
+  if (is_up_guessed) fmt::print("  up is guessed from the shape of the scene; --up sets it\n");
   // {} prints the shortest number that parses to the same value, so the options reproduce the
   // picture.
   fmt::print("  --eye {},{},{} --target {},{},{} --up {},{},{} --fov {} --exposure {}\n",
              view.eye.x, view.eye.y, view.eye.z, view.target.x, view.target.y, view.target.z,
              view.up.x, view.up.y, view.up.z, view.vertical_fov_degrees, image.exposure);
-  if (is_up_guessed) fmt::print("  up is guessed from the shape of the scene; --up sets it\n");
   if (image.steps.empty()) return;
   const double sum = std::accumulate(image.steps.begin(), image.steps.end(), 0.0);
   fmt::print("  steps per primary ray: {:.1f} on average, {:.0f} at most\n",
