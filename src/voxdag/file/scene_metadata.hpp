@@ -20,11 +20,11 @@ struct VdagSource {
 
 /// The up axis, the unit and the home view of a scene, as far as they are known.
 struct Presentation {
-  std::optional<char> up;      ///< The axis that points up: 'x', 'y' or 'z'.
-  bool is_up_guessed = false;  ///< Whether `up` was detected in the voxels, not told by the input.
-  std::string unit;            ///< Of the coordinates: mm, cm, m, in or ft; empty: not known.
+  std::optional<char> up;        ///< The axis that points up: 'x', 'y' or 'z'.
+  std::string unit;              ///< Of the coordinates: mm, cm, m, in or ft; empty: not known.
   std::optional<HomeView> home;  ///< Its up vector is that axis.
   bool cubes = false;            ///< Whether voxels are cubes, not samples of smooth surfaces.
+  bool is_up_guessed = false;  ///< Whether `up` was detected in the voxels, not told by the input.
 
   /// Returns the unit vector that points up.
   std::optional<Vec3d> up_vector() const {
