@@ -41,7 +41,7 @@ TEST(VdagMetadata, IsTheJsonOfTheSpecification) {
 
 TEST(VdagMetadata, UpUnitAndHomeAreOptionalKeys) {
   VdagMetadata metadata = example();
-  metadata.presentation = {'z', false, "mm", HomeView{{{1, 2, 3}, {0.5, 0, 0}, {0, 0, 1}, 35}, {}}};
+  metadata.presentation = {'z', "mm", HomeView{{{1, 2, 3}, {0.5, 0, 0}, {0, 0, 1}, 35}, {}}};
   const std::string json = vdag_metadata_json(metadata);
   EXPECT_TRUE(json.ends_with(R"("up":"z","unit":"mm","home":{"eye":[1.0,2.0,3.0],)"
                              R"("target":[0.5,0.0,0.0],"up":[0.0,0.0,1.0],"fov":35.0}})"));
