@@ -60,6 +60,7 @@ TEST_F(ImportCommand, PointsNeedAGrid) {
   refused({path("nothing.xyz"), "-r", "16"}, 1, "nothing.xyz");
   write_text(path("p.xyz"), "0 0 0\n1 two 3\n");
   refused({path("p.xyz"), "-r", "16"}, 1, path("p.xyz") + ": line 2: number 2");
+  write_text(path("p.xyz"), "0 0 0\n1 2 3\n");
   write_text(path("b.binvox"), "#binvox 1\ndim 4 4 4\ndata\n");
   refused({path("b.binvox"), "--bounds", "0,0,0,1,1,1"}, 1, "is for points");
   write_text(path("b.binvox"), "#binvox 1\ndim 4 4 4\nscale 2\ndata\n");
