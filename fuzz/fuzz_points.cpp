@@ -25,7 +25,9 @@ constexpr Open kReaders[] = {
     },
     with_fields<voxdag::open_las_points>,
     with_fields<voxdag::open_pcd_points>,
-    with_fields<voxdag::open_xyz_points>,
+    [](const Path& path, const LabelRequest& labels) {
+      return voxdag::open_xyz_points(path, labels, {});
+    },
     [](const Path& path, const LabelRequest& labels) {
       return voxdag::open_npy_points(path, voxdag::read_npy_start(path), labels);
     },
