@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dag.hpp"
+#include "voxdag/formats/imports/points/color_range.hpp"
 
 namespace py = pybind11;
 
@@ -104,10 +105,10 @@ std::vector<Vec3<std::uint8_t>> colors_of(const py::array& given) {
     const auto rows = whole_rows_of(given, kName, 0, is_16_bits ? 65535 : 255);
     std::int64_t greatest = 0;
     for (const Vec3<std::int64_t> row : rows) greatest = std::max({greatest, row.x, row.y, row.z});
-    // Many programs store 8 bits in 16.
-    const bool is_wide = is_16_bits && greatest > 255;
-    if (is_16_bits && !is_wide && greatest > 0)
-      warn("colors of 16 bits are taken as 0 to 255: none is greater");
+    std::vector<std::string> warnings;
+    const bool is_wide =
+        is_16_bits && color_range(false, static_cast<double>(greatest), warnings) == 65535;
+    for (const std::string& warning : warnings) warn("colors: " + warning);
     for (const Vec3<std::int64_t> row : rows) {
       Vec3<std::uint8_t> color;
       for (int c = 0; c < 3; ++c)

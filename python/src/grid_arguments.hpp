@@ -25,7 +25,6 @@ inline std::optional<std::int64_t> checked(const std::optional<std::int64_t>& re
 inline GridRequest grid_request(const std::optional<std::int64_t>& resolution,
                                 const std::optional<double>& pitch,
                                 const std::optional<Bounds>& bounds) {
-  constexpr std::int64_t kDefaultResolution = 1024;
   if (resolution && pitch) throw pybind11::value_error("give resolution or pitch, not both");
   if (pitch && !(*pitch > 0)) throw pybind11::value_error("pitch must be positive");
   GridRequest request;

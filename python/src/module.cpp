@@ -7,6 +7,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/file/model/written_by.hpp"
+#include "voxdag/formats/exports/export_voxels.hpp"
 
 namespace py = pybind11;
 
@@ -80,6 +81,7 @@ place; len(a) counts the voxels.)");
           "save",
           [](const Dag& d, const std::filesystem::path& path, bool compact) {
             run_work([&](Work work) {
+              check_vdag_name(path);
               d.model().save(path, compact, work);
               return 0;
             });

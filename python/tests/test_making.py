@@ -72,7 +72,7 @@ def test_colors_of_every_type(colors):
 
 def test_colors_of_8_bits_in_16():
     expected = voxdag.from_coords([[1, 2, 3]], colors=np.array([[255, 0, 51]], np.uint8)).colors([[1, 2, 3]])
-    with pytest.warns(UserWarning, match="colors of 16 bits are taken as 0 to 255"):
+    with pytest.warns(UserWarning, match="16-bit colours are taken as 0 to 255"):
         dag = voxdag.from_coords([[1, 2, 3]], colors=np.array([[255, 0, 51]], np.uint16))
     np.testing.assert_array_equal(dag.colors([[1, 2, 3]]), expected)
 

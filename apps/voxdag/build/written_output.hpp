@@ -1,15 +1,11 @@
 #pragma once
 /// The output of `voxdag build` and `voxdag import`. Its ending chooses what it becomes.
-#include <cstdint>
 #include <functional>
 #include <string>
 
 #include "cli/session.hpp"
 
 namespace voxdag::cli {
-
-/// Voxels along the longest side of meshes and points if the command line does not say it.
-inline constexpr std::int64_t kDefaultResolution = 1024;
 
 /// Returns the command that makes this output of a DAG: "export" or "render". Returns "" if the
 /// output is the built file: it ends in .vdag or .esvo, or is a pipe or a device. Throws UsageError

@@ -20,7 +20,7 @@ bool is_device(const fs::path& path) {
   return fs::is_other(path, unknown);
 }
 
-/// What standard_output() returned; empty: it was not called.
+/// Keeps the path that standard_output() returned; it is empty before the first call.
 std::string& standard_output_path() {
   static std::string path;
   return path;
@@ -51,10 +51,12 @@ std::string with_output_name(std::string text) {
   constexpr std::string_view kName = "standard output";
   for (std::size_t at = 0; !path.empty() && (at = text.find(path, at)) != text.npos;) {
     const std::size_t end = at + path.size();
-    if (end < text.size() && text[end] >= '0' && text[end] <= '9')
+    if (end < text.size() && text[end] >= '0' && text[end] <= '9') {
       at = end;  // the path of another descriptor
-    else
-      text.replace(at, path.size(), kName), at += kName.size();
+    } else {
+      text.replace(at, path.size(), kName);
+      at += kName.size();
+    }
   }
   return text;
 }

@@ -37,8 +37,8 @@ std::filesystem::path canonical_output(const std::string& path);
 
 /// Returns the output of a command line without -o: the name of the input with this ending, in the
 /// current folder. The input is the argument, or `file` if the argument is a pattern. Throws
-/// UsageError if the input has no name, or if a file has
-/// the output's name, unless it is a .vdag or .esvo file and `ending` one of these.
+/// UsageError if the input has no name, or if the output exists: only .vdag and .esvo files are
+/// replaced by their like.
 std::string default_output(const std::string& argument, const std::string& file,
                            const std::string& ending);
 

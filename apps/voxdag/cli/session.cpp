@@ -16,7 +16,7 @@
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/io/resolved_output.hpp"
 #include "voxdag/file/report/human.hpp"
-#include "voxdag/file/vdag_name.hpp"
+#include "voxdag/formats/exports/export_voxels.hpp"
 
 namespace voxdag::cli {
 

@@ -13,7 +13,7 @@
 #include "viewer/edit/save_edited.hpp"
 #include "viewer/site/single_page.hpp"
 #include "voxdag/file/vdag_container.hpp"
-#include "voxdag/file/vdag_name.hpp"
+#include "voxdag/formats/exports/export_voxels.hpp"
 
 namespace voxdag::cli {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-/// Keeps the layers of cells from which smooth normals are fitted.
+/// Keeps the layers around cells, of which smooth normals are fitted.
 #include <array>
 
 #include "voxdag/core/lanes.hpp"
@@ -47,8 +47,8 @@ class LayerLanes {
   FloatLanes products_{};          ///< xy, xz and yz.
 };
 
-/// The layers that were found last, for one thread and one scene: the samples of a tile's pixels
-/// show the same cells several times. A cell takes the place of another with the same hash.
+/// A table of the layers that one thread found last in one scene. The samples of a tile's pixels
+/// show the same cells several times. A cell replaces another one with the same hash.
 class LayerCache {
  public:
   /// Returns find_layer(). Calls for one cell must begin with `up` 0, and count up.
@@ -66,8 +66,7 @@ class LayerCache {
   }
 
  private:
-  static constexpr int kBits =
-      10;  // 140 KiB: with the rest of a tile's arrays, a part of a core's cache
+  static constexpr int kBits = 10;  // 140 KiB: a part of a core's second-level cache.
 
   struct Entry {
     Vec3i cell{};

@@ -13,7 +13,6 @@
 #include "voxdag/file/output_chunk.hpp"
 #include "voxdag/file/vdag_bytes.hpp"
 #include "voxdag/file/vdag_format.hpp"
-#include "voxdag/file/vdag_name.hpp"
 #include "voxdag/file/verify_vdag.hpp"
 #include "voxdag/stored/compact/compact_bytes.hpp"
 
@@ -32,7 +31,6 @@ void write_parts(const std::filesystem::path& path,
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
                 const VdagMetadata& metadata, const DagAttributesView& attributes,
                 AttributeForm form) {
-  check_vdag_name(path);
   const auto bytes = with_file_name(path.string(), [&] {
     return std::make_unique<PlainVdagBytes>(view, metadata, attributes, form);
   });
@@ -42,7 +40,6 @@ void write_vdag(const std::filesystem::path& path, const SvdagView& view,
 void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
                 const VdagMetadata& metadata, const DagAttributesView& attributes,
                 AttributeForm form) {
-  check_vdag_name(path);
   assert(metadata.grid.levels == compact.levels);
   const std::string json = with_file_name(path.string(), [&] {
     // A reader numbers the cells down to the level that the metadata has.

@@ -12,8 +12,7 @@ namespace voxdag {
 
 /// Writes the file, which appears under `path` when it is complete (see AtomicFile). Its bytes
 /// depend on the arguments alone. metadata.grid.levels must equal view.levels. Throws Error if the
-/// file cannot be written, if its name is that of another format (vdag_name.hpp), or if the grid
-/// has values that parse_vdag_metadata() would refuse.
+/// file cannot be written, or if the grid has values that parse_vdag_metadata() would refuse.
 /// `attributes` are the attributes of the DAG's cells; empty: the file has none. `form`
 /// says how it stores colours and normals.
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,

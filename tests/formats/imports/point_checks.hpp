@@ -26,7 +26,7 @@ struct PointCloud {
 
 /// The warning about 16 bits that hold 8.
 inline const std::vector<std::string> kTakenAs255 = {
-    "its colours of 16 bits are taken as 0 to 255: none is greater"};
+    "16-bit colours are taken as 0 to 255: none is greater"};
 
 /// Appends the bytes of a number.
 template <class T>

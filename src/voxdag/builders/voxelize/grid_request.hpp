@@ -18,6 +18,9 @@
 
 namespace voxdag {
 
+/// Voxels along the longest side of meshes and points if the user does not say it.
+inline constexpr std::int64_t kDefaultResolution = 1024;
+
 /// The resolution or the voxel size of a grid, and its place.
 struct GridRequest {
   /// Voxels along the longest side, 1 to 2^kMaxLevels. Either this or voxel_size is given.

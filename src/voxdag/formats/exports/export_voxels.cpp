@@ -118,6 +118,20 @@ const ExportFormat* format_of(const std::filesystem::path& path, const std::stri
 
 bool can_export_to(const std::filesystem::path& path) { return format_of(path) != nullptr; }
 
+void check_vdag_name(const std::filesystem::path& path) {
+  const std::string extension = lower_case(path.extension().string());
+  if (extension == ".esvo")
+    throw Error(path.string(), "",
+                "the file would be a DAG, and `voxdag build` makes .esvo files of meshes: end the "
+                "name in .vdag (other formats: voxdag export)");
+  const ExportFormat* const format = format_of(path);
+  if (extension == ".html" || format != nullptr)
+    throw Error(path.string(), "",
+                "the file would be a DAG: end the name in .vdag, and write a " +
+                    (format != nullptr ? std::string(format->ending) : extension) +
+                    " file with voxdag export");
+}
+
 std::string export_extensions() {
   std::string text;
   for (const ExportFormat& format : kExportFormats) {

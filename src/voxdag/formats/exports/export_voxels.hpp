@@ -11,6 +11,10 @@ bool can_export_to(const std::filesystem::path& path);
 /// Returns the extensions that export_voxels() knows: ".npy, .ply, ... or .glb".
 std::string export_extensions();
 
+/// Throws Error unless `path` may be the name of a .vdag file: if it ends in .esvo or .html, or in
+/// an extension that export_voxels() knows.
+void check_vdag_name(const std::filesystem::path& path);
+
 /// Chooses between contents of one extension.
 struct ExportContent {
   bool ply_faces = false;  ///< For .ply: outer faces, not points.

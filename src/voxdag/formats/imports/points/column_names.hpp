@@ -1,10 +1,14 @@
 #pragma once
-/// What the names of columns in texts of points stand for.
+/// Finds x, y, z, r, g and b among the names of columns in texts of points.
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "voxdag/core/lower_case.hpp"
+#include "voxdag/formats/imports/points/text_cells.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
 
 namespace voxdag {
@@ -56,6 +60,32 @@ inline bool is_color_name(std::string_view name) {
   return (value >= kCoordinates && value < kPointValues && name.size() > 1) ||
          lower.find("rgb") != lower.npos || lower.find("color") != lower.npos ||
          lower.find("colour") != lower.npos;
+}
+
+/// Returns the separator of a line of names; 0: see TextCells.
+inline char separator_of_names(std::string_view line) {
+  return find_separator(line, [](const auto&) { return true; });
+}
+
+/// Returns the names of columns. Between blanks, leaves out units: "x [m] y [m] z [m]".
+inline std::vector<std::string_view> names_of(std::string_view line) {
+  const char separator = separator_of_names(line);
+  std::vector<std::string_view> names = cells_of(line, separator);
+  bool is_unit = false;
+  if (separator == 0)
+    std::erase_if(names, [&](std::string_view name) {
+      const bool is_inside = is_unit || name.starts_with('[') || name.starts_with('(');
+      is_unit = is_inside && !name.ends_with(']') && !name.ends_with(')');
+      return is_inside;
+    });
+  return names;
+}
+
+/// Returns whether the names of columns have x, y and z among them.
+inline bool has_coordinate_names(const std::vector<std::string_view>& names) {
+  std::array<bool, kPointValues + 1> found{};
+  for (const std::string_view name : names) found[value_of_name(name)] = true;
+  return found[0] && found[1] && found[2];
 }
 
 }  // namespace voxdag

@@ -139,23 +139,6 @@ class XyzPoints : public VoxelSource {
     use_names(cells);
   }
 
-  static char separator_of_names(std::string_view line) {
-    return find_separator(line, [](const auto&) { return true; });
-  }
-  /// Returns the names of columns. Between blanks, leaves out units: "x [m] y [m] z [m]".
-  static std::vector<std::string_view> names_of(std::string_view line) {
-    const char separator = separator_of_names(line);
-    std::vector<std::string_view> names = cells_of(line, separator);
-    bool is_unit = false;
-    if (separator == 0)
-      std::erase_if(names, [&](std::string_view name) {
-        const bool is_inside = is_unit || name.starts_with('[') || name.starts_with('(');
-        is_unit = is_inside && !name.ends_with(']') && !name.ends_with(')');
-        return is_inside;
-      });
-    return names;
-  }
-
   /// Checks the first points, so that no warnings go before their errors. Finds the separator if
   /// the names do not tell it.
   void check_first_points() {
@@ -223,12 +206,6 @@ class XyzPoints : public VoxelSource {
     if (label_column_) points.add_label(label_of(value_in(*label_column_, "label")));
     for (const std::size_t column : channel_columns_)
       points.add_channel(value_in(column, "number"));
-  }
-
-  static bool has_coordinate_names(const std::vector<std::string_view>& fields) {
-    std::array<bool, kPointValues + 1> found{};
-    for (const std::string_view field : fields) found[value_of_name(field)] = true;
-    return found[0] && found[1] && found[2];
   }
 
   void use_names(const std::vector<std::string_view>& names) {
