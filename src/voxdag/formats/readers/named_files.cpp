@@ -180,8 +180,7 @@ std::optional<std::string> NamedFiles::warning(const std::string& file) const {
   if (base_names_ == 0) return std::nullopt;
   return file + ": " + std::to_string(base_names_) +
          " names of files stand for files of the same name in or below the mesh's folder: the "
-         "first "
-         "is " +
+         "first is " +
          first_base_name_;
 }
 

@@ -61,7 +61,7 @@ class MtlReader::Impl {
     finish();
   }
 
-  bool describes(std::size_t material) {
+  bool complete(std::size_t material) {
     if (described_[material] != Described::kNot) return true;
     Material& own = appearance_.materials[material];
     const auto other = find_plain(own.name);
@@ -313,6 +313,6 @@ void MtlReader::read(std::string_view text, const std::filesystem::path& folder,
   impl_->read(text, folder, name);
 }
 
-bool MtlReader::describes(std::size_t material) { return impl_->describes(material); }
+bool MtlReader::complete(std::size_t material) { return impl_->complete(material); }
 
 }  // namespace voxdag

@@ -32,10 +32,10 @@ class MtlReader {
   /// messages. Throws OverMemory and Cancelled.
   void read(std::string_view text, const std::filesystem::path& folder, const std::string& name);
 
-  /// Returns whether a file that was read describes appearance.materials[material]: by its name, or
-  /// else by its name without quotes and comment, on either side. Call it for each material when
-  /// all files are read: it sets materials that share a description.
-  bool describes(std::size_t material);
+  /// Completes appearance.materials[material] after all files are read: if none describes its name,
+  /// the description of an equal name without quotes and comments counts. Returns whether there is
+  /// a description.
+  bool complete(std::size_t material);
 
  private:
   class Impl;

@@ -101,7 +101,7 @@ std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh
   if (auto warning = files.warning(source.name)) warnings.add(std::move(*warning));
   std::size_t missing = 0, first = 0;
   for (std::size_t i = 0; i < materials.size() && !libraries.empty(); ++i)
-    if (!reader.describes(i) && !materials[i].name.empty() && missing++ == 0) first = i;
+    if (!reader.complete(i) && !materials[i].name.empty() && missing++ == 0) first = i;
   // A library that is missing has had its warning.
   if (missing > 0 && all_found && all_open)
     warnings.add(source.name + ": no MTL file describes " +
