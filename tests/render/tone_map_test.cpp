@@ -28,9 +28,14 @@ TEST(ToneMap, EveryCurveRisesFromBlackToWhiteAndStaysInRange) {
   }
 }
 
-TEST(ToneMap, NeutralKeepsColoursThatAreNotBright) {
-  for (const Vec3f rgb : {Vec3f{0.7f, 0.3f, 0.1f}, Vec3f{0.01f, 0.02f, 0.005f}})
-    EXPECT_EQ(tone_map(ToneMap::kNeutral, rgb), rgb);
+TEST(ToneMap, NeutralOnlyDarkensColoursThatAreNotBright) {
+  for (const auto& [rgb, peak] :
+       {std::pair{Vec3f{0.7f, 0.3f, 0.1f}, 0.66f}, {Vec3f{0.02f, 0.01f, 0.005f}, 0.0025f}}) {
+    const Vec3f mapped = tone_map(ToneMap::kNeutral, rgb);
+    EXPECT_FLOAT_EQ(mapped.x, peak);
+    EXPECT_FLOAT_EQ(mapped.y, peak * rgb.y / rgb.x);
+    EXPECT_FLOAT_EQ(mapped.z, peak * rgb.z / rgb.x);
+  }
   EXPECT_FLOAT_EQ(tone_map(ToneMap::kNeutral, grey(static_cast<float>(ExposureRule::kMiddle))).x,
                   0.18f);
 }

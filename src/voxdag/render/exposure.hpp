@@ -8,7 +8,8 @@ namespace voxdag {
 
 /// The numbers of automatic_exposure().
 struct ExposureRule {
-  static constexpr double kMiddle = 0.18;  ///< The surfaces' geometric mean: middle grey.
+  static constexpr double kMiddle =
+      0.22;  ///< The surfaces' geometric mean: the neutral curve shows it as 0.18.
   static constexpr double kBright = 0.95;  ///< This part of the surfaces may not become white.
   static constexpr double kWhite = 1.1;    ///< The brightness from which a surface is white.
   static constexpr double kMin = 1e-6;     ///< Darker pixels count as this bright in the mean.

@@ -8,7 +8,7 @@ namespace voxdag {
 
 /// The curves of tone_map(). The order is that of the viewer's page.
 enum class ToneMap : std::int32_t {
-  kNeutral,  ///< Keeps hues; changes no colours up to three quarters of white.
+  kNeutral,  ///< Keeps hues, and the saturation of colours up to three quarters of white.
   kAgx,      ///< Keeps hues less; bright colours turn pale, as on film.
   kFilmic    ///< Works on each channel alone; raises the contrast.
 };
@@ -20,6 +20,7 @@ struct ToneCurve {
 
 /// The numbers of tone_map_neutral().
 struct NeutralCurve {
+  static constexpr float kFloor = 0.04f;  ///< Dark colours lose up to this much.
   static constexpr float kStart = 0.76f;  ///< Brighter colours are compressed.
   static constexpr float kDesaturation = 0.15f;
 };
@@ -43,11 +44,15 @@ VOXDAG_HD inline float tone_map_filmic(float x) {
                             (x * (ToneCurve::kC * x + ToneCurve::kD) + ToneCurve::kE));
 }
 
-/// Source: Khronos Group, "Khronos PBR Neutral Tone Mapper", 2024; without its first step. That one
-/// takes away the 4% of the light that dielectrics mirror, which these surfaces do not.
+/// Source: Khronos Group, "Khronos PBR Neutral Tone Mapper", 2024. Its first step subtracts the 4%
+/// of the light that dielectrics mirror from each channel. Diffuse surfaces do not mirror, so here
+/// the colour is scaled to lose this much: dark colours keep their hue and saturation.
 VOXDAG_HD inline Vec3f tone_map_neutral(Vec3f rgb) {
   using Curve = NeutralCurve;
-  const float peak = std::fmax(rgb.x, std::fmax(rgb.y, rgb.z));
+  const float brightest = std::fmax(rgb.x, std::fmax(rgb.y, rgb.z));
+  const float peak = brightest < 2 * Curve::kFloor ? brightest * brightest / (4 * Curve::kFloor)
+                                                   : brightest - Curve::kFloor;
+  rgb = rgb * (brightest > 0 ? peak / brightest : 0.0f);
   if (peak < Curve::kStart) return rgb;
   const float room = 1 - Curve::kStart;
   const float to = 1 - room * room / (peak + room - Curve::kStart);

@@ -12,7 +12,9 @@ uniform float u_exposure;     // 0: the sum holds display colours
 layout(location = 0) out vec4 out_color;
 
 vec3 neutral(vec3 rgb) {
-  float peak = max(rgb.x, max(rgb.y, rgb.z));
+  float brightest = max(rgb.x, max(rgb.y, rgb.z));
+  float peak = brightest < 2.0 * NEUTRAL_FLOOR ? brightest * brightest / (4.0 * NEUTRAL_FLOOR) : brightest - NEUTRAL_FLOOR;
+  rgb *= peak / max(brightest, 1e-10);
   if (peak < NEUTRAL_START) return rgb;
   float room = 1.0 - NEUTRAL_START;
   float to = 1.0 - room * room / (peak + room - NEUTRAL_START);
