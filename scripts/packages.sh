@@ -79,7 +79,7 @@ make_arm64_system() {
   local system=$1 packages link
   packages=$(printf '%s\n' "${voxdag_packages[@]}" "${voxdag_release_packages[@]}" libgtest-dev |
     grep -- '-dev$\|^python3-numpy$' | sort -u | sed 's/^python3-dev$/libpython3-dev/' | paste -sd,)
-  [ "$(cat "$system/packages" 2>/dev/null)" != "$packages" ] || return 0
+  [ "$(cat "$system/packages" 2>/dev/null)" != "$packages" ] || [ ! -s "$system/files" ] || return 0
   install_packages "${voxdag_arm64_packages[@]}"
   echo "Unpacking the packages for arm64"
   rm -rf "$system"

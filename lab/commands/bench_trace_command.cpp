@@ -186,7 +186,7 @@ void add_bench_trace_command(const Command& bench, Session& session) {
   add_scene_options(command, *arguments, session);
   command.list(
       "--layout", plan.layouts, parse_layout, "LAYOUT,LAYOUT...",
-      "Layouts to cast rays at. For a DAG: paper (the default), paper_scalar, wide; for an "
+      "Layouts to cast rays at. For a DAG: paper (the default), paper_scalar, top; for an "
       "ESVO: contours (the default), contours_scalar, cubes, cubes_scalar");
   command.parsed("--size", arguments->size, parse_image_size, "WxH",
                  "Size of each view in pixels (default: 1024x768)");

@@ -5,7 +5,7 @@
 #include "voxdag/cpu/packets/packet_caster.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
-#include "voxdag/trace/wide_cast.hpp"
+#include "voxdag/trace/top_cast.hpp"
 
 namespace voxdag::lab {
 namespace {
@@ -78,44 +78,46 @@ class PaperLayout : public PaperScalarLayout {
   BoundedDag dag_;
 };
 
-/// Counts the bytes that a walk through the wide layout reads.
-class ByteCountingWideNodes : public WideNodes {
+/// Counts the bytes that a walk reads through a DAG with a grid.
+class ByteCountingTopNodes : public TopNodes {
  public:
-  ByteCountingWideNodes(const WideNodes& nodes, std::uint64_t& steps, std::uint64_t& bytes)
-      : WideNodes(nodes), steps_(&steps), bytes_(&bytes) {}
+  ByteCountingTopNodes(const TopNodes& nodes, std::uint64_t& steps, std::uint64_t& bytes)
+      : TopNodes(nodes), steps_(&steps), bytes_(&bytes) {}
 
   void on_step() const { ++*steps_; }
-  std::uint64_t mask(Node node) const {
-    *bytes_ += 8;
-    return WideNodes::mask(node);
-  }
-  Node child(Node node, std::uint64_t mask, std::uint32_t cell) const {
-    *bytes_ += 4;
-    return WideNodes::child(node, mask, cell);
-  }
+  void on_read(std::uint32_t bytes) const { *bytes_ += bytes; }
 
  private:
   std::uint64_t *steps_, *bytes_;
 };
 
-/// Casts one ray at a time at the wide layout.
-class Wide : public TraceLayout {
+/// Casts one ray at a time at the layout that files store, with a dense grid above it.
+class TopLayout : public PaperScalarLayout {
  public:
-  explicit Wide(const SvdagView& dag) : dag_(make_wide_svdag(dag)) {}
+  explicit TopLayout(const SvdagView& dag)
+      : PaperScalarLayout(dag), dag_(dag), grid_(make_grid(dag)) {}
 
-  std::uint64_t bytes() const override { return dag_.view().bytes(); }
-  DeviceLayout device_layout() const override { return DeviceLayout::kWide; }
+  std::uint64_t bytes() const override {
+    return PaperScalarLayout::bytes() + grid_.cells.size() * sizeof(std::uint64_t);
+  }
+  DeviceLayout device_layout() const override { return DeviceLayout::kTop; }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
-    return runner_of(ScalarCaster<WideNodes>(WideNodes(dag_.view())), rays, casts);
+    return runner_of(ScalarCaster<TopNodes>(nodes()), rays, casts);
   }
   WalkCost cost(std::span<const CastRay> casts) const override {
     std::uint64_t steps = 0, read = 0;
-    const ByteCountingWideNodes nodes(WideNodes(dag_.view()), steps, read);
-    return cost_of(nodes, casts, steps, read);
+    return cost_of(ByteCountingTopNodes(nodes(), steps, read), casts, steps, read);
   }
 
  private:
-  WideSvdag dag_;
+  static TopGrid make_grid(const SvdagView& dag) {
+    const int level = top_level(dag.levels);
+    return level > 0 ? make_top_grid(dag, level) : TopGrid{};
+  }
+  TopNodes nodes() const { return {dag_, grid_.view()}; }
+
+  SvdagView dag_;
+  TopGrid grid_;
 };
 
 /// Counts the bytes that a walk through an ESVO reads.
@@ -155,7 +157,7 @@ class EsvoTraceLayout : public TraceLayout {
   EsvoView esvo_;
 };
 
-const std::vector<std::string> kDagLayouts{"paper", "paper_scalar", "wide"};
+const std::vector<std::string> kDagLayouts{"paper", "paper_scalar", "top"};
 /// Casts one ray at a time at an ESVO, with its contours or as cubes.
 template <class Nodes>
 class EsvoScalarLayout : public EsvoTraceLayout<Nodes> {
@@ -195,7 +197,7 @@ std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const Vo
   const SvdagView& dag = *voxels.dag();
   if (name == "paper") return std::make_unique<PaperLayout>(dag);
   if (name == "paper_scalar") return std::make_unique<PaperScalarLayout>(dag);
-  if (name == "wide") return std::make_unique<Wide>(dag);
+  if (name == "top") return std::make_unique<TopLayout>(dag);
   throw Error("there is no layout \"" + name + "\" of a DAG");
 }
 

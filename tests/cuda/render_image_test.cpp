@@ -29,12 +29,12 @@ void expect_like(const RenderedImage& image, const RenderedImage& expected) {
 
 TEST_F(CudaRender, IsWithinOneGreyLevelOfTheCpuForEveryEffect) {
   const Svdag dag = picture_scene();
-  const DeviceScene paper(device_, dag.view()), wide(device_, dag.view(), DeviceLayout::kWide);
+  const DeviceScene paper(device_, dag.view()), top(device_, dag.view(), DeviceLayout::kTop);
   for (const Picture& picture : pictures(4)) {
     SCOPED_TRACE(picture.name);
     const RenderedImage expected = render_image(dag.view(), picture_grid(), picture.options);
     expect_like(render_image(paper, picture_grid(), picture.options), expected);
-    expect_like(render_image(wide, picture_grid(), picture.options), expected);
+    expect_like(render_image(top, picture_grid(), picture.options), expected);
   }
 }
 

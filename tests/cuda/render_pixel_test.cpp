@@ -13,8 +13,8 @@
 #include "voxdag/cuda/beam_start.hpp"
 #include "voxdag/render/render_plan.hpp"
 #include "voxdag/render/source_view_samples.hpp"
+#include "voxdag/trace/refill_caster.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
-#include "voxdag/trace/wide_cast.hpp"
 
 namespace voxdag {
 namespace {
@@ -98,9 +98,9 @@ TEST(RenderPixel, ThreadsCoverTheirBlockInWarpsOfEightByFour) {
 
 TEST(RenderPixel, EqualsTheTilesOfTheCpuForEveryEffect) {
   const Svdag dag = picture_scene();
-  const WideSvdag wide_dag = make_wide_svdag(dag.view());
+  const TopGrid grid = make_top_grid(dag.view(), 2);
   const ScalarCaster paper(SvdagNodes(dag.view()));
-  const ScalarCaster wide(WideNodes(wide_dag.view()));
+  const RefillCaster top(TopNodes(dag.view(), grid.view()));
   for (Picture& picture : pictures(1)) {
     SCOPED_TRACE(picture.name);
     picture.options.with_steps = false;  // another kernel counts steps
@@ -109,7 +109,7 @@ TEST(RenderPixel, EqualsTheTilesOfTheCpuForEveryEffect) {
         render_as_device(dag.view(), SvdagNodes(dag.view()), paper, picture.options, nullptr),
         expected);
     expect_equal(
-        render_as_device(dag.view(), SvdagNodes(dag.view()), wide, picture.options, nullptr),
+        render_as_device(dag.view(), SvdagNodes(dag.view()), top, picture.options, nullptr),
         expected);
   }
 }

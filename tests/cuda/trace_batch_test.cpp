@@ -36,7 +36,7 @@ void expect_hits_of_the_cpu(const CudaDevice& device, int levels, int voxels, st
   const std::vector<Ray> rays = rays_of_every_kind(grid, count, 7);
   std::vector<Hit> expected(count), hits(count);
   trace_batch(dag.view(), grid, rays, expected);
-  for (const DeviceLayout layout : {DeviceLayout::kPaper, DeviceLayout::kWide}) {
+  for (const DeviceLayout layout : {DeviceLayout::kPaper, DeviceLayout::kTop}) {
     CudaTracer(DeviceScene(device, dag.view(), layout), grid).trace(rays, hits);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < count; ++i) wrong += hits[i] == expected[i] ? 0 : 1;

@@ -140,7 +140,7 @@ void for_all_work(const Body& body) {
   const Esvo esvo = TestEsvoAssembler(3, 4).assemble(*random_octree(rng, 0, 6), 6);
   for (void (*const work)(const DeviceScene&) : {trace, render, render_from_source, measure}) {
     body([&] { work(DeviceScene(choose_cuda_device(), dag.view())); });
-    body([&] { work(DeviceScene(choose_cuda_device(), dag.view(), DeviceLayout::kWide)); });
+    body([&] { work(DeviceScene(choose_cuda_device(), dag.view(), DeviceLayout::kTop)); });
     body([&] { work(DeviceScene(choose_cuda_device(), esvo.view())); });
     body([&] { work(DeviceScene(choose_cuda_device(), esvo.view(), DeviceLayout::kCubes)); });
   }

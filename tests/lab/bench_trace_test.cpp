@@ -104,12 +104,12 @@ TEST_F(BenchTrace, AnEsvoOnAnotherGridIsAnError) {
 
 TEST_F(BenchTrace, AllLayoutsMeetTheSame) {
   const ProcessResult result =
-      bench({path("in.vdag"), "--layout", "paper,paper_scalar,wide", "--json"});
+      bench({path("in.vdag"), "--layout", "paper,paper_scalar,top", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const Json json = Json::parse(result.out);
   ASSERT_EQ(json.size(), 15u);
   for (std::size_t i = 0; i < 15; ++i) {
-    EXPECT_EQ(json[i].at("layout"), i < 5 ? "paper" : i < 10 ? "paper_scalar" : "wide");
+    EXPECT_EQ(json[i].at("layout"), i < 5 ? "paper" : i < 10 ? "paper_scalar" : "top");
     EXPECT_EQ(json[i].at("hit_part"), json[i % 5].at("hit_part"));
     EXPECT_LE(json[i].at("cells_per_ray"), json[i % 5].at("cells_per_ray"));
   }
@@ -209,9 +209,9 @@ TEST_F(BenchTrace, TakesEsvosInBothForms) {
     EXPECT_GT(row.at("bytes_per_ray"), 0);
   }
   EXPECT_EQ(layouts, (std::set<std::string>{"contours", "cubes"}));
-  const ProcessResult other = bench({path("in.esvo"), "--layout", "wide"});
+  const ProcessResult other = bench({path("in.esvo"), "--layout", "top"});
   EXPECT_EQ(other.status, 1);
-  EXPECT_NE(other.err.find("no layout \"wide\" of an ESVO"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("no layout \"top\" of an ESVO"), std::string::npos) << other.err;
 }
 
 }  // namespace

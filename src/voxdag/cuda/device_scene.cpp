@@ -52,8 +52,7 @@ struct DeviceScene::Memory {
   VoxelSet host;
   DeviceVoxels view;
   std::shared_ptr<const DagBuffers> dag;
-  DeviceBuffer<std::uint32_t> wide_words;
-  DeviceBuffer<std::uint64_t> slots;
+  DeviceBuffer<std::uint64_t> slots, top_cells;
 };
 
 DeviceScene::DeviceScene(const CudaDevice& device, const VoxelSet& scene, DeviceLayout layout) {
@@ -71,16 +70,16 @@ DeviceScene::DeviceScene(const CudaDevice& device, const VoxelSet& scene, Device
     memory_ = memory;
     return;
   }
-  assert(layout == DeviceLayout::kPaper || layout == DeviceLayout::kWide);
+  assert(layout == DeviceLayout::kPaper || layout == DeviceLayout::kTop);
   const SvdagView& dag = *scene.dag();
-  WideSvdag wide;
-  if (layout == DeviceLayout::kWide) wide = make_wide_svdag(dag);
-  require_device_memory(dag.bytes() + wide.view().bytes(), "the DAG");
+  const int level = layout == DeviceLayout::kTop ? top_level(dag.levels) : 0;
+  TopGrid top;
+  if (level > 0) top = make_top_grid(dag, level);
+  require_device_memory(dag.bytes() + array_bytes<std::uint64_t>(top.cells.size()), "the DAG");
   memory->dag = upload_dag(dag, dag.node_words(), dag.leaf_block_count, 0);
   memory->show(dag);
-  memory->wide_words = upload(std::span<const std::uint32_t>(wide.words), "the DAG");
-  view.wide = wide.view();
-  view.wide.words = memory->wide_words.data();
+  memory->top_cells = upload(std::span<const std::uint64_t>(top.cells), "the DAG");
+  view.top = {memory->top_cells.data(), level};
   memory_ = memory;
 }
 

@@ -7,7 +7,7 @@ namespace voxdag {
 
 void launch_paths(const DeviceVoxels& voxels, const RenderSetup& setup, const LaunchRange& range,
                   const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream) {
-  // Wide nodes give the same hits, and would be one more kernel to compile.
+  // A grid above the DAG gives the same hits, and would be one more kernel to compile.
   with_beam_nodes(voxels, [&]<class Nodes>(const Nodes& nodes) {
     launch("tracing paths",
            render_kernel<TileScratch<1, PathScratch<1>>, Nodes, ScalarCaster<Nodes>>,

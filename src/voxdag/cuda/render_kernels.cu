@@ -96,12 +96,13 @@ void launch_render(const DeviceVoxels& voxels, const RenderSetup& setup, const L
   // Kernels of their own trace paths: they need more registers.
   if (setup.settings.bounces >= 0)
     return launch_paths(voxels, setup, range, view_samples, rays, stream);
-  with_all_nodes(
-      voxels, [&]<class BeamNodes, class Nodes>(const BeamNodes& beam_nodes, const Nodes& nodes) {
-        launch("rendering", render_kernel<TileScratch<1>, BeamNodes, ScalarCaster<Nodes>>,
-               range.last_block - range.first_block, kBlockPixels, stream, beam_nodes,
-               ScalarCaster(nodes), setup, range, view_samples, rays);
-      });
+  with_all_nodes(voxels, [&]<class BeamNodes, class Nodes>(const BeamNodes& beam_nodes,
+                                                           const Nodes& nodes) {
+    const auto caster = thread_caster(nodes);
+    launch("rendering", render_kernel<TileScratch<1>, BeamNodes, std::decay_t<decltype(caster)>>,
+           range.last_block - range.first_block, kBlockPixels, stream, beam_nodes, caster, setup,
+           range, view_samples, rays);
+  });
 }
 
 void launch_partial_render(const PartialEsvoView& voxels, const RenderSetup& setup,

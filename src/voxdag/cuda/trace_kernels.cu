@@ -6,6 +6,7 @@ namespace voxdag {
 namespace {
 
 constexpr std::uint32_t kThreads = 128;
+constexpr int kRaysPerThread = 16;
 constexpr const char* kDoing = "casting rays";
 
 template <class Nodes>
@@ -37,6 +38,22 @@ __global__ void __launch_bounds__(kThreads)
   hits[i] = cast(nodes, ray.ray, ray.stop, cell) ? 1 : 0;
 }
 
+/// Each thread casts kRaysPerThread rays. Rays that are cast together are consecutive.
+template <class Caster>
+__global__ void __launch_bounds__(kThreads)
+    any_hits_of_threads_kernel(Caster caster, const CastRay* rays, std::uint8_t* hits,
+                               std::uint32_t count) {
+  constexpr std::uint32_t kWarp = 32;
+  const std::uint32_t warp = (blockIdx.x * kThreads + threadIdx.x) / kWarp;
+  const std::uint64_t first = std::uint64_t{warp} * kWarp * kRaysPerThread + threadIdx.x % kWarp;
+  const auto at = [&](int i) { return first + static_cast<std::uint64_t>(i) * kWarp; };
+  caster.any(
+      kRaysPerThread, [&](int i) { return at(i) < count ? rays[at(i)] : CastRay{}; },
+      [&](int i, bool is_hit) {
+        if (at(i) < count) hits[at(i)] = is_hit ? 1 : 0;
+      });
+}
+
 std::uint32_t blocks_of(std::uint32_t count) { return (count + kThreads - 1) / kThreads; }
 
 }  // namespace
@@ -63,8 +80,13 @@ void launch_any_hits(const DeviceVoxels& dag, const CastRay* rays, std::uint8_t*
                      std::uint32_t count, cudaStream_t stream) {
   if (count == 0) return;
   with_nodes(dag, [&]<class Nodes>(const Nodes& nodes) {
-    launch(kDoing, any_hits_kernel<Nodes>, blocks_of(count), kThreads, stream, nodes, rays, hits,
-           count);
+    if constexpr (std::is_same_v<Nodes, TopNodes>)
+      launch(kDoing, any_hits_of_threads_kernel<RefillCaster>,
+             blocks_of((count + kRaysPerThread - 1) / kRaysPerThread), kThreads, stream,
+             RefillCaster(nodes), rays, hits, count);
+    else
+      launch(kDoing, any_hits_kernel<Nodes>, blocks_of(count), kThreads, stream, nodes, rays, hits,
+             count);
   });
 }
 

@@ -2,8 +2,8 @@
 /// Selects the types for which kernels are compiled by the layout at run time.
 #include "voxdag/cuda/device_voxels.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
+#include "voxdag/trace/refill_caster.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
-#include "voxdag/trace/wide_cast.hpp"
 
 namespace voxdag {
 
@@ -14,8 +14,8 @@ void with_nodes(const DeviceVoxels& voxels, const Body& body) {
     body(ContourNodes(voxels.esvo));
   else if (voxels.layout == DeviceLayout::kCubes)
     body(EsvoNodes(voxels.esvo));
-  else if (voxels.layout == DeviceLayout::kWide)
-    body(WideNodes(voxels.wide));
+  else if (voxels.layout == DeviceLayout::kTop)
+    body(TopNodes(voxels.paper, voxels.top));
   else
     body(SvdagNodes(voxels.paper));
 }
@@ -30,6 +30,13 @@ void with_beam_nodes(const DeviceVoxels& voxels, const Body& body) {
   else
     body(SvdagNodes(voxels.paper));
 }
+
+/// Returns the caster of a thread at these nodes.
+template <class Nodes>
+ScalarCaster<Nodes> thread_caster(const Nodes& nodes) {
+  return ScalarCaster<Nodes>(nodes);
+}
+inline RefillCaster thread_caster(const TopNodes& nodes) { return RefillCaster(nodes); }
 
 /// Calls body(beam_nodes, nodes) with both node layouts.
 template <class Body>

@@ -21,6 +21,7 @@ class CellWalk {
     float x, y, z, t;
   };
 
+  CellWalk() = default;
   /// Starts at the child of the root that the ray is in at `t`. The ray must be in the root at `t`.
   VOXDAG_HD CellWalk(const GridRay& ray, float t)
       : ox_(ray.origin.x),
@@ -52,6 +53,27 @@ class CellWalk {
     return exit;
   }
 
+  /// Returns T at which the ray leaves the cube of `side` cells per axis that has this cell at its
+  /// upper corner, or leaves the root.
+  VOXDAG_HD float exit_of_cube(std::uint32_t side) const {
+    const std::uint32_t by = (side - 1) << bit_;
+    const float x = (ox_ - float_from_bits(lowered(x_, by))) * ix_;
+    const float y = (oy_ - float_from_bits(lowered(y_, by))) * iy_;
+    const float z = (oz_ - float_from_bits(lowered(z_, by))) * iz_;
+    const float xy = x < y ? x : y;
+    return xy < z ? xy : z;
+  }
+
+  /// Moves to the cell of the size 1 << `bit` that the ray is in at `t`. Returns whether it is in
+  /// the root. `way` has 1 / ray.inverse, up to rounding.
+  VOXDAG_HD bool jump(float t, int bit, const float* way) {
+    bit_ = bit;
+    x_ = cell_at(t, ox_, ix_, way[0]);
+    y_ = cell_at(t, oy_, iy_, way[1]);
+    z_ = cell_at(t, oz_, iz_, way[2]);
+    return (x_ & y_ & z_ & 1u << (kTopBit + 1)) != 0;  // a bit of 1.0f
+  }
+
   /// PUSH: moves to the child that the ray is in at `t`.
   VOXDAG_HD void push(float t) {
     --bit_;
@@ -81,6 +103,14 @@ class CellWalk {
     return changed_ >> bit_ == 1;
   }
 
+  /// Returns whether advance() left the cell of the size 1 << `bit` that the walk was in.
+  VOXDAG_HD bool has_left(int bit) const { return changed_ >> bit != 0; }
+  /// Moves to the cell of the size 1 << `bit` that contains this one.
+  VOXDAG_HD void rise(int bit) {
+    bit_ = bit;
+    keep_bits_above();
+  }
+
   /// POP: moves to the cell of the highest level at which advance() changed the position. Returns
   /// false if the ray has left the root.
   VOXDAG_HD bool pop() {
@@ -105,6 +135,17 @@ class CellWalk {
     z_ |= up_z << bit_;
     child_ = up_x | up_y << 1 | up_z << 2;
   }
+  /// Returns the coordinate `by` below x, or that of the root's side.
+  VOXDAG_HD static std::uint32_t lowered(std::uint32_t x, std::uint32_t by) {
+    return x - by > kOne ? x - by : kOne;
+  }
+  /// Returns the coordinate of the cell that the ray is in at `t` on one axis. A product finds it,
+  /// or the next one above: the errors of rounding are less than kMore. The plane rule decides.
+  VOXDAG_HD std::uint32_t cell_at(float t, float origin, float inverse, float way) const {
+    constexpr float kMore = 0x1p-21f;
+    const std::uint32_t x = bits_of_float(origin - t * way + kMore) & ~0u << bit_;
+    return x - ((origin - float_from_bits(x)) * inverse <= t ? 1u << bit_ : 0u);
+  }
   VOXDAG_HD void keep_bits_above() {
     const std::uint32_t above = ~0u << bit_;
     x_ &= above;
@@ -112,7 +153,7 @@ class CellWalk {
     z_ &= above;
   }
 
-  float ox_, oy_, oz_, ix_, iy_, iz_;
+  float ox_ = 1, oy_ = 1, oz_ = 1, ix_ = 1, iy_ = 1, iz_ = 1;
   std::uint32_t x_ = kOne, y_ = kOne, z_ = kOne;
   std::uint32_t child_ = 0, changed_ = 0;
   int bit_ = kTopBit;

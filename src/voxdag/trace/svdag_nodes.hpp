@@ -74,6 +74,7 @@ class SvdagPath {
     std::uint32_t node, mask;
   };
 
+  SvdagPath() = default;
   VOXDAG_HD explicit SvdagPath(const SvdagNodes& layout)
       : nodes_(layout.view().nodes),
         leaf_blocks_(layout.view().leaf_blocks),
@@ -85,19 +86,23 @@ class SvdagPath {
   }
 
   VOXDAG_HD std::uint32_t mask() const { return mask_; }
-  VOXDAG_HD void push(Entry* stack, int level, std::uint32_t index) {
-    if (level > leaf_level_) {
-      mask_ = static_cast<std::uint32_t>(block_ >> (8 * index)) & 0xFFu;
-      return;
-    }
-    stack[level - 1] = {node_, mask_};
-    node_ = nodes_[node_ + 1 + popcount8(mask_ & ((1u << index) - 1u))];
+  /// Starts again at `node` of `level` <= L-2.
+  VOXDAG_HD void start(std::uint32_t node, int level) {
+    node_ = node;
     if (level == leaf_level_) {
       block_ = leaf_blocks_[node_];
       mask_ = block_mask_ = leaf_block_child_mask(block_);
     } else {
       mask_ = child_mask(nodes_ + node_);
     }
+  }
+  VOXDAG_HD void push(Entry* stack, int level, std::uint32_t index) {
+    if (level > leaf_level_) {
+      mask_ = static_cast<std::uint32_t>(block_ >> (8 * index)) & 0xFFu;
+      return;
+    }
+    stack[level - 1] = {node_, mask_};
+    start(nodes_[node_ + 1 + popcount8(mask_ & ((1u << index) - 1u))], level);
   }
   VOXDAG_HD void pop(const Entry* stack, int level) {
     if (level > leaf_level_) {
@@ -109,13 +114,13 @@ class SvdagPath {
   }
 
  private:
-  const std::uint32_t* nodes_;
-  const std::uint64_t* leaf_blocks_;
-  int leaf_level_;  ///< L-2
-  std::uint32_t node_, mask_;
+  const std::uint32_t* nodes_ = nullptr;
+  const std::uint64_t* leaf_blocks_ = nullptr;
+  int leaf_level_ = 0;  ///< L-2
+  std::uint32_t node_ = 0, mask_ = 0;
   /// The last leaf block that the walk was in.
   std::uint64_t block_ = 0;
-  std::uint32_t block_mask_;
+  std::uint32_t block_mask_ = 0;
 };
 
 }  // namespace voxdag
