@@ -85,7 +85,7 @@ make_arm64_system() {
   rm -rf "$system"
   mkdir -p "$(dirname "$system")"
   # shellcheck disable=SC2016
-  mmdebstrap --quiet --variant=extract --architectures=arm64 --include="$packages" --customize-hook='
+  mmdebstrap --quiet --variant=extract --architectures=arm64 --include="$packages" --extract-hook='
     for deb in "$1"/var/cache/apt/archives/*.deb; do
       dpkg-deb --fsys-tarfile "$deb" | tar t | sed "s|^\.|$(dpkg-deb -W --showformat="\${Package} \${Version} " "$deb")|"
     done >"$1/files"' bookworm "$system"
