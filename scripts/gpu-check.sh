@@ -170,12 +170,12 @@ if [ $measure = yes ]; then
   else
     for resolution in 32768 4096; do
       attempt voxdag build "$sponza" -r $resolution -o $work/sponza-$resolution.vdag
-      bench sponza-$resolution $work/sponza-$resolution.vdag --mesh "$sponza" --layout paper \
+      bench sponza-$resolution $work/sponza-$resolution.vdag --mesh "$sponza" --layout paper,top \
         --rays 8000000
     done
     # Rays that end at voxels, and NanoVDB with the same rays.
     if [ -x $nanovdb ]; then
-      bench sponza-4096-nanovdb $work/sponza-4096.vdag --nanovdb $nanovdb --lod 0 --layout paper \
+      bench sponza-4096-nanovdb $work/sponza-4096.vdag --nanovdb $nanovdb --lod 0 --layout paper,top \
         --rays 4000000
     else
       echo "NanoVDB is not measured: OpenVDB or NanoVDB was not found" >&2
@@ -189,7 +189,7 @@ if [ $measure = yes ]; then
     bench sponza-1024-esvo $work/sponza.esvo --mesh "$sponza" --layout contours,cubes --rays 8000000
     bench_esvo sponza-rates "$sponza"
   fi
-  bench courtyard-2048 $scene.vdag --mesh $scene.ply --layout paper,wide --rays 8000000
+  bench courtyard-2048 $scene.vdag --mesh $scene.ply --layout paper,top --rays 8000000
   bench_esvo courtyard-rates $scene.ply
   echo "== papers"
   attempt voxdag bench papers --quick --device cuda -o $work/papers
