@@ -32,4 +32,4 @@ scripts/same_bytes.py build/release/apps/voxdag/voxdag \
 cmake --build --preset arm64 --target library_tests
 ctest --preset arm64 -j "$(nproc)" -LE extended \
   -R '^(core|io|parallel|stored|svdag|esvo|attributes|compact|wire|algebra|query|voxels|edit|voxelize|solid|dag|encode|build|trace|file|model|report)\.' \
-  -E '\.(ConfinedChild|AtomicFile|ProcessMemory|MemoryBudget)$'
+  -E '\.(ConfinedChild|AtomicFile|ProcessMemory|MemoryBudget|BuildMemory)$'

@@ -81,7 +81,8 @@ needs() { readelf -d "$@" | sed -n 's/.*(NEEDED).*\[\(.*\)\]$/\1/p' | sort -u; }
 package_of() {
   local file=${1#"$system"} package
   if [ -n "$system" ]; then
-    grep -E " (/usr)?${file#/usr}$" "$system/files" | cut -d' ' -f1,2
+    awk -v file="${file#/usr}" '$3 == file || $3 == "/usr" file { print $1, $2; found = 1 } END { exit !found }' \
+      "$system/files" || { echo "release: no package has $file" >&2; return 1; }
   else
     package=$(dpkg -S "$file" 2>/dev/null || dpkg -S "${file#/usr}")
     dpkg-query -W -f='${Package} ${Version}\n' "${package%%: *}"
