@@ -46,6 +46,7 @@ TEST_F(Sponge, UnknownScenesAndSizesAreRefused) {
   expect_failure(run_voxdag({"scene", "sponge", "--size", "99", "-o", path("x.ply")}), 1, "99");
   expect_failure(run_voxdag({"scene", "sponge"}), 2, "--output");
   expect_failure(run_voxdag({"scene", "-o", path("x.ply")}), 2, "name");
+  expect_failure(run_voxdag({"scene", "sponge", "-o", path("x.vdag")}), 2, "a mesh, FILE.ply");
   EXPECT_FALSE(exists("x.ply"));
 }
 

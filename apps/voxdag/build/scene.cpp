@@ -1,10 +1,12 @@
 /// `voxdag scene`: writes procedural scenes as mesh files.
 #include <fmt/core.h>
 
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
+#include "cli/output_files.hpp"
 #include "cli/parse.hpp"
 #include "cli/written_files.hpp"
 #include "voxdag/formats/scenes/ply_writer.hpp"
@@ -68,7 +70,7 @@ void make(const SceneArguments& arguments, Session& session) {
   const Mesh mesh = make_scene(arguments.name, arguments.options, &session.progress);
   write_ply(arguments.output, mesh, &session.progress);
   if (session.json) {
-    const nlohmann::ordered_json summary = {{"file", arguments.output},
+    const nlohmann::ordered_json summary = {{"file", with_output_name(arguments.output)},
                                             {"vertices", mesh.vertices.size()},
                                             {"triangles", mesh.triangles.size()}};
     fmt::print("{}", json_text(summary));
@@ -96,6 +98,9 @@ void choose_work(const std::shared_ptr<SceneArguments>& arguments, Session& sess
     };
   } else {
     if (arguments->output.empty()) throw UsageError("--output", "is required");
+    const std::string ending = std::filesystem::path(arguments->output).extension().string();
+    if (!ending.empty() && ending != ".ply" && !is_pipe_or_device(arguments->output))
+      throw UsageError("--output", fmt::format("writes a mesh, FILE.ply, not {}", ending));
     session.work = [arguments, &session] { make(*arguments, session); };
   }
 }
