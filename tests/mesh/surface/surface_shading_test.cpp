@@ -342,6 +342,20 @@ TEST(SurfaceShading, MissingTexturesAreWarningsThatNameTheReplacement) {
   EXPECT_EQ(shading.mean(0, kWhole).normal, (Vec3f{0, 0, 1}));
 }
 
+TEST(SurfaceShading, ManyMissingTexturesAreFewWarnings) {
+  Square square;
+  square.appearance.materials.resize(20);
+  for (int i = 0; i < 20; ++i) {
+    const auto path = square.directory.path() / ("missing" + std::to_string(i) + ".png");
+    square.appearance.images.push_back({path.string(), path, {}});
+    square.appearance.materials[static_cast<std::size_t>(i)].color_map.image = i;
+  }
+  std::vector<std::string> warnings;
+  const SurfaceShading shading(square.mesh, square.appearance, &warnings);
+  ASSERT_EQ(warnings.size(), 9u);
+  EXPECT_EQ(warnings.back(), "there are 12 more warnings about textures");
+}
+
 TEST(SurfaceShading, MaterialsShareTheirTextures) {
   Square square;
   square.material().color_map = square.noise(64, 4);

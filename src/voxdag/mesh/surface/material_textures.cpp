@@ -88,8 +88,7 @@ class Loader {
         entries[i]->second = {};
         make_entry(i);
       }
-    for (const auto& [key, loaded] : textures_)
-      warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
+    add_warnings(warnings);
     std::vector<ResolvedMaterial> resolved;
     for (const Material& material : appearance_.materials) resolved.push_back(resolve(material));
     if (!has_uvs_ && has_unused_textures_)
@@ -99,6 +98,18 @@ class Loader {
   }
 
  private:
+  /// Adds the warnings of all textures. A scan without its folder of textures may have hundreds.
+  void add_warnings(std::vector<std::string>& warnings) const {
+    constexpr std::size_t kMost = 8;
+    std::size_t count = 0;
+    for (const auto& [key, loaded] : textures_)
+      for (const std::string& warning : loaded.warnings)
+        if (++count <= kMost) warnings.push_back(warning);
+    if (count > kMost)
+      warnings.push_back("there are " + std::to_string(count - kMost) +
+                         " more warnings about textures");
+  }
+
   static TextureKey color_key(const Material& material) {
     const TextureUse& use = material.color_map.exists() ? material.color_map : material.alpha_map;
     TextureKey key{TextureKey::kColor,

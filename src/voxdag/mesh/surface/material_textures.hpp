@@ -31,10 +31,11 @@ struct ResolvedMaterial {
 };
 
 /// Decodes the textures of the materials, each texture once, in parallel. A texture that cannot be
-/// read is left out; a line in `warnings` names the file, the reason and the replacement. If
-/// `has_uvs` is false, there are no texture coordinates and all textures are left out. Without
-/// `with_metallic_roughness`, materials have the default of these numbers. Throws Cancelled, and
-/// OverMemory with the name of an image that does not fit even when it is decoded alone.
+/// read is left out; a line in `warnings` names the file, the reason and the replacement, for the
+/// first eight of them. If `has_uvs` is false, there are no texture coordinates and all textures
+/// are left out. Without `with_metallic_roughness`, materials have the default of these numbers.
+/// Throws Cancelled, and OverMemory with the name of an image that does not fit even when it is
+/// decoded alone.
 std::vector<ResolvedMaterial> load_materials(const Appearance& appearance, bool has_uvs,
                                              std::vector<std::string>& warnings, Work work,
                                              bool with_metallic_roughness = false);
