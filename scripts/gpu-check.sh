@@ -170,12 +170,13 @@ if [ $measure = yes ]; then
   else
     for resolution in 32768 4096; do
       attempt voxdag build "$sponza" -r $resolution -o $work/sponza-$resolution.vdag
-      bench sponza-$resolution $work/sponza-$resolution.vdag --mesh "$sponza" --layout paper,top \
+      bench sponza-$resolution $work/sponza-$resolution.vdag --mesh "$sponza" --layout paper \
         --rays 8000000
+      bench sponza-$resolution-top $work/sponza-$resolution.vdag --layout paper,top --rays 8000000
     done
     # Rays that end at voxels, and NanoVDB with the same rays.
     if [ -x $nanovdb ]; then
-      bench sponza-4096-nanovdb $work/sponza-4096.vdag --nanovdb $nanovdb --lod 0 --layout paper,top \
+      bench sponza-4096-nanovdb $work/sponza-4096.vdag --nanovdb $nanovdb --lod 0 --layout paper \
         --rays 4000000
     else
       echo "NanoVDB is not measured: OpenVDB or NanoVDB was not found" >&2

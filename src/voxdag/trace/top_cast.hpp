@@ -53,7 +53,7 @@ class TopWalk {
       if constexpr (requires { nodes.on_read(0u); }) nodes.on_read(8);
       const std::uint64_t cell = nodes.top().cells[top_index(ray.mirrored)];
       if (TopGridView::is_empty(cell)) {
-        // The ray runs down its mirrored axes, so up those that are mirrored.
+        // A ray runs up the axes that are mirrored, so these bits are its octant.
         const float t = cell_.exit_of_cube(TopGridView::free_way(cell, ray.mirrored));
         if (t > ray.t_max) return State::kMisses;
         t_ = t;
