@@ -184,10 +184,9 @@ void add_bench_trace_command(const Command& bench, Session& session) {
       "voxdag bench trace sponza.vdag --mesh sponza.obj --plot rays.svg\n"
       "Without a file: Crytek Sponza, Sibenik, San Miguel, Lucy and hairball, built in memory.");
   add_scene_options(command, *arguments, session);
-  command.list(
-      "--layout", plan.layouts, parse_layout, "LAYOUT,LAYOUT...",
-      "Layouts to cast rays at. For a DAG: paper (the default), paper_scalar, top; for an "
-      "ESVO: contours (the default), contours_scalar, cubes, cubes_scalar");
+  command.list("--layout", plan.layouts, parse_layout, "LAYOUT,LAYOUT...",
+               "Layouts to cast rays at. For a DAG: paper (the default), paper_scalar, top; for an "
+               "ESVO: contours (the default), contours_scalar, cubes, cubes_scalar");
   command.parsed("--size", arguments->size, parse_image_size, "WxH",
                  "Size of each view in pixels (default: 1024x768)");
   command.number("--views", plan.views, NumberRange::whole(1, 64), "N", "Number of cameras")
