@@ -95,29 +95,25 @@ class ByteCountingTopNodes : public TopNodes {
 class TopLayout : public PaperScalarLayout {
  public:
   explicit TopLayout(const SvdagView& dag)
-      : PaperScalarLayout(dag), dag_(dag), grid_(make_grid(dag)) {}
+      : PaperScalarLayout(dag),
+        grid_(make_top_grid(dag, top_level(dag.levels))),
+        nodes_(dag, grid_.view()) {}
 
   std::uint64_t bytes() const override {
     return PaperScalarLayout::bytes() + grid_.cells.size() * sizeof(std::uint64_t);
   }
   DeviceLayout device_layout() const override { return DeviceLayout::kTop; }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
-    return runner_of(ScalarCaster<TopNodes>(nodes()), rays, casts);
+    return runner_of(ScalarCaster<TopNodes>(nodes_), rays, casts);
   }
   WalkCost cost(std::span<const CastRay> casts) const override {
     std::uint64_t steps = 0, read = 0;
-    return cost_of(ByteCountingTopNodes(nodes(), steps, read), casts, steps, read);
+    return cost_of(ByteCountingTopNodes(nodes_, steps, read), casts, steps, read);
   }
 
  private:
-  static TopGrid make_grid(const SvdagView& dag) {
-    const int level = top_level(dag.levels);
-    return level > 0 ? make_top_grid(dag, level) : TopGrid{};
-  }
-  TopNodes nodes() const { return {dag_, grid_.view()}; }
-
-  SvdagView dag_;
   TopGrid grid_;
+  TopNodes nodes_;
 };
 
 /// Counts the bytes that a walk through an ESVO reads.

@@ -100,7 +100,7 @@ TEST(RenderPixel, EqualsTheTilesOfTheCpuForEveryEffect) {
   const Svdag dag = picture_scene();
   const TopGrid grid = make_top_grid(dag.view(), 2);
   const ScalarCaster paper(SvdagNodes(dag.view()));
-  const RefillCaster top(TopNodes(dag.view(), grid.view()));
+  const RefillCaster<> top(TopNodes(dag.view(), grid.view()));
   for (Picture& picture : pictures(1)) {
     SCOPED_TRACE(picture.name);
     picture.options.with_steps = false;  // another kernel counts steps

@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <atomic>
+#include <barrier>
+#include <thread>
+
 #include "support/brute_svdag.hpp"
 #include "support/same_cells.hpp"
 #include "voxdag/trace/refill_caster.hpp"
@@ -16,9 +21,7 @@ struct MakeTop {
   int levels_below = 2;  ///< Levels below the grid's; at least 2.
   TopGrid grid{};
   TopNodes operator()(const SvdagView& dag) {
-    const int level = std::max(dag.levels - levels_below, 0);
-    grid = {};
-    if (level > 0) grid = make_top_grid(dag, level);
+    grid = make_top_grid(dag, std::max(dag.levels - levels_below, 0));
     return TopNodes(dag, grid.view());
   }
 };
@@ -32,6 +35,37 @@ TEST(TopCast, EndsAtTheSameLevelOfDetail) {
   for (const int levels : {3, 5, 6}) expect_same_cells(levels, 12, MakeTop{}, some_size);
 }
 
+/// Rays of every kind, every second one with a level of detail.
+std::vector<CastRay> casts_of(const Grid& grid, unsigned seed) {
+  TestRays test_rays(grid, seed);
+  std::vector<CastRay> rays;
+  for (int i = 0; i < 500; ++i)
+    for (int kind = 0; kind < static_cast<int>(RayKind::kCount); ++kind)
+      rays.push_back({make_grid_ray(grid, test_rays.make(static_cast<RayKind>(kind))),
+                      i % 2 == 0 ? no_size(i) : some_size(i)});
+  return rays;
+}
+
+/// Casts rays[lane], rays[lane + lanes] and so on, and sets their results.
+template <class Caster>
+void cast_lane(const Caster& caster, const std::vector<CastRay>& rays, std::size_t lane,
+               std::size_t lanes, std::vector<int>& results) {
+  const auto at = [&](int i) { return lane + static_cast<std::size_t>(i) * lanes; };
+  caster.any(
+      static_cast<int>((rays.size() - lane + lanes - 1) / lanes),
+      [&](int i) -> const CastRay& { return rays[at(i)]; },
+      [&](int i, bool is_hit) { results[at(i)] = is_hit ? 1 : 0; });
+}
+
+void expect_results(const SvdagView& dag, const std::vector<CastRay>& rays,
+                    const std::vector<int>& results) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    CellHit cell;
+    ASSERT_EQ(results[i], cast(SvdagNodes(dag), rays[i].ray, rays[i].stop, cell) ? 1 : 0)
+        << "ray " << i;
+  }
+}
+
 TEST(RefillCaster, FindsWhatSingleRaysFind) {
   Grid grid;
   grid.levels = 5;
@@ -39,24 +73,53 @@ TEST(RefillCaster, FindsWhatSingleRaysFind) {
     SCOPED_TRACE(set.name);
     const Svdag dag = brute_svdag(grid.levels, set.voxels);
     MakeTop make;
-    const RefillCaster caster(make(dag.view()));
-    TestRays test_rays(grid, 13);
-    std::vector<CastRay> rays;
-    for (int i = 0; i < 500; ++i)
-      for (int kind = 0; kind < static_cast<int>(RayKind::kCount); ++kind)
-        rays.push_back({make_grid_ray(grid, test_rays.make(static_cast<RayKind>(kind))),
-                        i % 2 == 0 ? no_size(i) : some_size(i)});
+    const std::vector<CastRay> rays = casts_of(grid, 13);
     std::vector<int> results(rays.size(), -1);
-    caster.any(
-        static_cast<int>(rays.size()),
-        [&](int i) -> const CastRay& { return rays[static_cast<std::size_t>(i)]; },
-        [&](int i, bool is_hit) { results[static_cast<std::size_t>(i)] = is_hit ? 1 : 0; });
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      CellHit cell;
-      ASSERT_EQ(results[i], cast(SvdagNodes(dag.view()), rays[i].ray, rays[i].stop, cell) ? 1 : 0)
-          << "ray " << i;
-    }
+    cast_lane(RefillCaster<>(make(dag.view())), rays, 0, 1, results);
+    expect_results(dag.view(), rays, results);
   }
+}
+
+/// Threads that stand for the lanes of a warp.
+struct TestWarp {
+  static constexpr std::size_t kLanes = 2 * RefillCaster<>::kStartTogether;
+  std::barrier<> barrier{kLanes};
+  std::array<std::atomic<int>, 3> counts{};  // of this round, the next one and the last one
+};
+
+/// The lanes of the TestWarp of this thread.
+class TestLanes {
+ public:
+  static inline thread_local TestWarp* warp = nullptr;
+  int count(bool is) const {
+    const std::size_t round = round_++;
+    warp->counts[(round + 1) % 3] = 0;
+    warp->counts[round % 3] += is ? 1 : 0;
+    warp->barrier.arrive_and_wait();
+    return warp->counts[round % 3];
+  }
+
+ private:
+  mutable std::size_t round_ = 0;
+};
+
+TEST(RefillCaster, LanesOfAWarpStartTheirRaysTogether) {
+  Grid grid;
+  grid.levels = 5;
+  const Svdag dag = brute_svdag(grid.levels, voxel_sets(grid.levels, 14).back().voxels);
+  MakeTop make;
+  const RefillCaster<TestLanes> caster(make(dag.view()));
+  const std::vector<CastRay> rays = casts_of(grid, 14);
+  std::vector<int> results(rays.size(), -1);
+  TestWarp warp;
+  std::vector<std::thread> lanes;
+  for (std::size_t lane = 0; lane < TestWarp::kLanes; ++lane)
+    lanes.emplace_back([&, lane] {
+      TestLanes::warp = &warp;
+      cast_lane(caster, rays, lane, TestWarp::kLanes, results);
+    });
+  for (std::thread& lane : lanes) lane.join();
+  expect_results(dag.view(), rays, results);
 }
 
 /// Returns the free way of a cell by definition.

@@ -9,6 +9,7 @@
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
 #include "cli/written_files.hpp"
+#include "voxdag/core/lower_case.hpp"
 #include "voxdag/formats/scenes/ply_writer.hpp"
 #include "voxdag/formats/scenes/scenes.hpp"
 #include "voxdag/render/film/path_file.hpp"
@@ -98,7 +99,8 @@ void choose_work(const std::shared_ptr<SceneArguments>& arguments, Session& sess
     };
   } else {
     if (arguments->output.empty()) throw UsageError("--output", "is required");
-    const std::string ending = std::filesystem::path(arguments->output).extension().string();
+    const std::string ending =
+        lower_case(std::filesystem::path(arguments->output).extension().string());
     if (!ending.empty() && ending != ".ply" && !is_pipe_or_device(arguments->output))
       throw UsageError("--output", fmt::format("writes a mesh, FILE.ply, not {}", ending));
     session.work = [arguments, &session] { make(*arguments, session); };

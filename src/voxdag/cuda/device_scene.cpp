@@ -72,14 +72,12 @@ DeviceScene::DeviceScene(const CudaDevice& device, const VoxelSet& scene, Device
   }
   assert(layout == DeviceLayout::kPaper || layout == DeviceLayout::kTop);
   const SvdagView& dag = *scene.dag();
-  const int level = layout == DeviceLayout::kTop ? top_level(dag.levels) : 0;
-  TopGrid top;
-  if (level > 0) top = make_top_grid(dag, level);
+  const TopGrid top = make_top_grid(dag, layout == DeviceLayout::kTop ? top_level(dag.levels) : 0);
   require_device_memory(dag.bytes() + array_bytes<std::uint64_t>(top.cells.size()), "the DAG");
   memory->dag = upload_dag(dag, dag.node_words(), dag.leaf_block_count, 0);
   memory->show(dag);
   memory->top_cells = upload(std::span<const std::uint64_t>(top.cells), "the DAG");
-  view.top = {memory->top_cells.data(), level};
+  view.top = {memory->top_cells.data(), top.level};
   memory_ = memory;
 }
 

@@ -79,7 +79,7 @@ RenderedImage render_image(const DeviceScene& scene, const Grid& grid, const Ren
   assert(grid.levels == scene.host().levels());
   scene.make_current();
   RenderPlan plan(scene.host(), grid, options);
-  // Without beams for primary rays: on an H100 they cost a third more than they save.
+  // Without beams for primary rays: on an H100 they take longer than they save.
   const DeviceFrame frame(plan, false, options.filter);
   const RenderSetup& setup = frame.setup();
   const CudaStream stream;

@@ -81,9 +81,9 @@ void launch_any_hits(const DeviceVoxels& dag, const CastRay* rays, std::uint8_t*
   if (count == 0) return;
   with_nodes(dag, [&]<class Nodes>(const Nodes& nodes) {
     if constexpr (std::is_same_v<Nodes, TopNodes>)
-      launch(kDoing, any_hits_of_threads_kernel<RefillCaster>,
+      launch(kDoing, any_hits_of_threads_kernel<RefillCaster<>>,
              blocks_of((count + kRaysPerThread - 1) / kRaysPerThread), kThreads, stream,
-             RefillCaster(nodes), rays, hits, count);
+             RefillCaster<>(nodes), rays, hits, count);
     else
       launch(kDoing, any_hits_kernel<Nodes>, blocks_of(count), kThreads, stream, nodes, rays, hits,
              count);

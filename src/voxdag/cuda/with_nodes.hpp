@@ -36,7 +36,7 @@ template <class Nodes>
 ScalarCaster<Nodes> thread_caster(const Nodes& nodes) {
   return ScalarCaster<Nodes>(nodes);
 }
-inline RefillCaster thread_caster(const TopNodes& nodes) { return RefillCaster(nodes); }
+inline RefillCaster<> thread_caster(const TopNodes& nodes) { return RefillCaster<>(nodes); }
 
 /// Calls body(beam_nodes, nodes) with both node layouts.
 template <class Body>

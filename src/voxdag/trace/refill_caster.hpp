@@ -2,9 +2,9 @@
 /// Casts the rays of a stream at a DAG with a dense grid, for a GPU whose threads run in warps.
 ///
 /// Rays in all directions take different numbers of steps, and a warp that casts one per thread
-/// takes as many as its longest ray: three times the mean of occlusion rays. So a thread whose ray
-/// has ended takes its next one while the others continue. Starting rays takes as long for one
-/// thread as for all, so threads wait until some of them have ended.
+/// takes as many as its longest ray. So a thread whose ray has ended starts its next one while
+/// others continue. One start takes a warp as long as 32, so threads wait until some can start
+/// together.
 ///
 /// Source: Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009.
 #include "voxdag/trace/scalar_caster.hpp"
@@ -12,28 +12,30 @@
 
 namespace voxdag {
 
-/// The threads of the warp that run together with this one, as bits; on the host this one alone.
-VOXDAG_HD inline unsigned lanes_together() {
+/// The threads of a warp that run together; on the host this one alone.
+class WarpLanes {
+ public:
+  /// Returns how many of the lanes have `is`. All of them must call it.
+  VOXDAG_HD int count(bool is) const {
 #ifdef __CUDA_ARCH__
-  return __activemask();
+    return __popc(__ballot_sync(lanes_, is));
 #else
-  return 1u;
+    return is ? 1 : 0;
 #endif
-}
+  }
 
-/// Returns how many of `lanes` have `is`; all of them must call it.
-VOXDAG_HD inline int count_lanes(unsigned lanes, bool is) {
 #ifdef __CUDA_ARCH__
-  return __popc(__ballot_sync(lanes, is));
-#else
-  return is ? static_cast<int>(lanes) : 0;
+ private:
+  unsigned lanes_ = __activemask();
 #endif
-}
+};
 
-/// A caster as scalar_caster.hpp defines it. Only any() starts rays at different times.
+/// A caster as scalar_caster.hpp defines it. Only any() starts rays at different times. any() makes
+/// a `Lanes`, which is as WarpLanes.
+template <class Lanes = WarpLanes>
 class RefillCaster : public ScalarCaster<TopNodes> {
  public:
-  /// The number of threads that wait until they start their next rays together.
+  /// Threads start their next rays when so many of them wait, or when none of the lanes runs.
   static constexpr int kStartTogether = 8;
 
   VOXDAG_HD explicit RefillCaster(const TopNodes& nodes)
@@ -41,20 +43,20 @@ class RefillCaster : public ScalarCaster<TopNodes> {
 
   template <class MakeRay, class OnResult>
   VOXDAG_HD void any(int count, const MakeRay& make_ray, const OnResult& on_result) const {
-    const unsigned lanes = lanes_together();
+    const Lanes lanes;
     TopWalk::Entry stack[kMaxLevels];
     TopWalk walk;
     CastRay ray;
     CellHit cell;
     bool runs = false;
     for (int next = 0, current = 0;;) {
-      const int running = count_lanes(lanes, runs);
-      const int waiting = count_lanes(lanes, !runs && next < count);
+      const int running = lanes.count(runs);
+      const int waiting = lanes.count(!runs && next < count);
       if (running == 0 && waiting == 0) return;
       if (!runs && next < count && (running == 0 || waiting >= kStartTogether)) {
         current = next++;
         ray = make_ray(current);
-        runs = can_hit(nodes_, ray.ray);
+        runs = can_walk(nodes_, ray.ray);
         if (runs)
           walk = TopWalk(nodes_, ray.ray, ray.stop.first_level());
         else

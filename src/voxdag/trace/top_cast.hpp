@@ -33,8 +33,9 @@ class TopWalk {
   enum class State { kRuns, kHits, kMisses };
 
   TopWalk() = default;
-  /// Starts the walk. The DAG must not be empty, and the ray must be in the grid at its t_min. A
-  /// ray that may end at cells of the grid or above walks the nodes from the root.
+  /// Starts the walk of a ray for which can_walk() is true. The ray may end at cells of level
+  /// `first_stop` and finer ones. If the grid's cells are among them, the walk does without the
+  /// grid.
   VOXDAG_HD TopWalk(const TopNodes& nodes, const GridRay& ray, int first_stop)
       : cell_(ray, ray.t_min), path_(nodes), t_(ray.t_min) {
     const int level = nodes.top().level;
@@ -117,8 +118,9 @@ class TopWalk {
   int top_bit_ = kRootBit;  ///< Cells of the grid have the size 1 << top_bit_; kRootBit: no grid.
 };
 
-/// Returns false if the ray meets nothing of the DAG for sure: else a walk may start.
-VOXDAG_HD inline bool can_hit(const SvdagNodes& nodes, const GridRay& ray) {
+/// Returns whether a TopWalk may start: the DAG has voxels, and the ray is in the grid at its
+/// t_min.
+VOXDAG_HD inline bool can_walk(const SvdagNodes& nodes, const GridRay& ray) {
   return !ray.misses() && !nodes.is_empty() && ray.exit_t() > ray.t_min;
 }
 
@@ -129,7 +131,7 @@ requires std::is_base_of_v<TopNodes, Nodes> VOXDAG_HD inline bool cast(const Nod
                                                                        const GridRay& ray,
                                                                        const Stop& stop,
                                                                        CellHit& hit) {
-  if (!can_hit(nodes, ray)) return false;
+  if (!can_walk(nodes, ray)) return false;
   TopWalk::Entry stack[kMaxLevels];
   TopWalk walk(nodes, ray, stop.first_level());
   for (;;) {

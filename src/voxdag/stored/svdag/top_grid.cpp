@@ -98,8 +98,9 @@ void set_free_ways(TopGrid& grid, bool is_up) {
 }  // namespace
 
 TopGrid make_top_grid(const SvdagView& dag, int level) {
-  assert(level >= 1 && level <= dag.levels - 2);
+  assert(level >= 0 && level <= dag.levels - 2);
   TopGrid grid;
+  if (level == 0) return grid;
   grid.level = level;
   grid.cells.assign(std::size_t{1} << (3 * level), kEmpty);
   if (!dag.is_empty()) set_nodes(dag, dag.root, 0, 0, 0, 0, grid);

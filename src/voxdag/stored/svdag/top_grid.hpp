@@ -9,8 +9,8 @@
 ///
 /// The free way in an octant is the side, in cells, of the largest empty cube that has this cell at
 /// a corner and lies in the octant's directions: bit a of the octant is set if it lies upwards on
-/// axis a. It is at most 255; beyond the grid everything is empty. Distances by octant are longer
-/// than those to the nearest voxel: a ray that leaves a surface moves away at once.
+/// axis a. It is at most 255; beyond the grid everything is empty. One distance to the nearest
+/// voxel would be short beside every surface; by octant it is long for rays that leave the surface.
 ///
 /// Made from a DAG when a device gets it, and never stored.
 #include <cstdint>
@@ -23,7 +23,7 @@ namespace voxdag {
 /// A view for kernels: points into a TopGrid and owns nothing.
 struct TopGridView {
   const std::uint64_t* cells = nullptr;
-  int level = 0;  ///< The level of the cells, 1 to L-2.
+  int level = 0;  ///< The level of the cells, 1 to L-2; 0: there are none.
 
   VOXDAG_HD static bool is_empty(std::uint64_t cell) { return (cell & 0xFFu) != 0; }
   VOXDAG_HD static std::uint32_t node(std::uint64_t cell) {
@@ -41,11 +41,11 @@ struct TopGrid {
   TopGridView view() const { return {cells.data(), level}; }
 };
 
-/// Returns the level of the grid for a DAG of L levels: 8 (256³ cells, 128 MiB), but at most L-2,
-/// and 0 (no grid) for an L of 2.
+/// Returns the level of the grid that devices get for a DAG of L levels: 8 (256³ cells, 128 MiB),
+/// but at most L-2.
 constexpr int top_level(int levels) { return levels - 2 < 8 ? levels - 2 : 8; }
 
-/// Returns the grid of a level, 1 to L-2. Takes O(8^level) time.
+/// Returns the grid of a level, 0 to L-2. Takes O(8^level) time.
 TopGrid make_top_grid(const SvdagView& dag, int level);
 
 }  // namespace voxdag
